@@ -12,7 +12,7 @@ function split(words) {
 }
 
 /**
- * Numbers of a calibration that are written with six decimals (poecal-results/src/calibration_file/corrected.rs), the last of which may be
+ * Numbers of a calibration that are written with six decimals (poecal-results/src/calibration_file/corrected_model.rs), the last of which may be
  * rounded differently.
  */
 const COARSE = /("(?:left_out|score)": )(-?[\d.e-]+)/g;

@@ -21,7 +21,7 @@ use std::time::Instant;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
-use poecal_arm::trig::wrapped;
+use poecal_arm::trig::wrap_angle;
 use poecal_arm::{AllBranches, Arm, Branches, HeldBranches};
 
 use numbers::Numbers;
@@ -69,22 +69,22 @@ fn main() {
         }
         for &off in if is_json || are_arms { &OFF[..2] } else { &OFF[..] } {
             let is_seven = calibrated::SEVEN.contains(&name);
-            let make = if is_seven { calibrated::seven } else { calibrated::arm };
+            let make = if is_seven { calibrated::arm_of_seven } else { calibrated::arm };
             let arm = make(name, off.0, off.1);
             if are_arms {
-                println!("{}", drawn(&arm, name, off.0 != 0.0));
+                println!("{}", arm_json(&arm, name, off.0 != 0.0));
                 continue;
             }
             let label =
                 if off.0 == 0.0 { name.to_owned() } else { format!("{name} {:.1}°", off.0.to_degrees()) };
-            let measured = measured(&arm, targets);
+            let measured = measure_reach(&arm, targets);
             println!("{}", if is_json { measured.json(name, off) } else { measured.line(&label) });
         }
     }
 }
 
 /// An arm as JSON.
-fn drawn(arm: &Arm, kind: &str, is_calibrated: bool) -> String {
+fn arm_json(arm: &Arm, kind: &str, is_calibrated: bool) -> String {
     let list = |it: &Vector3<f64>| format!("[{}, {}, {}]", it.x, it.y, it.z);
     let lists = |of: fn(&Screw) -> Vector3<f64>| {
         arm.screws().iter().map(|it| list(&of(it))).collect::<Vec<String>>().join(", ")
@@ -117,16 +117,16 @@ struct Measured {
     reached_by_all: usize,
 }
 
-fn measured(arm: &Arm, targets: usize) -> Measured {
+fn measure_reach(arm: &Arm, targets: usize) -> Measured {
     let mut numbers = Numbers(5);
     let mut out = Measured { targets, ..Measured::default() };
     if let Some(all) = AllBranches::new(arm) {
-        let at = |target: &Pose, _: &[f64; 6]| all.at(target);
-        out.run(arm, &mut numbers, (&at, &|target, q| all.nearest(target, q)), None);
+        let at = |target: &Pose, _: &[f64; 6]| all.branches_at(target);
+        out.run(arm, &mut numbers, (&at, &|target, q| all.solve_nearest(target, q)), None);
     } else if let Some(held) = HeldBranches::new(arm, None) {
         let joint = held.joint();
-        let at = |target: &Pose, q: &[f64; 7]| held.at(target, q[joint]);
-        out.run(arm, &mut numbers, (&at, &|target, q| held.nearest(target, q)), Some(joint));
+        let at = |target: &Pose, q: &[f64; 7]| held.branches_at(target, q[joint]);
+        out.run(arm, &mut numbers, (&at, &|target, q| held.solve_nearest(target, q)), Some(joint));
     }
     out.at_us.sort_by(f32::total_cmp);
     out.nearest_us.sort_by(f32::total_cmp);
@@ -146,14 +146,15 @@ impl Measured {
         held: Option<usize>,
     ) {
         for _ in 0..self.targets {
-            let q: [f64; N] = std::array::from_fn(|_| PI * numbers.one());
+            let q: [f64; N] = std::array::from_fn(|_| PI * numbers.next_number());
             let target = arm.forward_kinematics(&q);
             let is_far = calibrated::smallest_free(arm, &q, held) > FAR;
             self.far += usize::from(is_far);
             let begin = Instant::now();
             let found = black_box(at(black_box(&target), &q));
             self.at_us.push(1e6 * begin.elapsed().as_secs_f32());
-            let is_same = |branch: &[f64; N]| branch.iter().zip(&q).all(|(a, b)| wrapped(a - b).abs() < SAME);
+            let is_same =
+                |branch: &[f64; N]| branch.iter().zip(&q).all(|(a, b)| wrap_angle(a - b).abs() < SAME);
             let is_found = found.as_slice().iter().any(is_same);
             self.branches += found.as_slice().len();
             self.found += usize::from(is_found);
@@ -164,11 +165,11 @@ impl Measured {
                 self.position_m = self.position_m.max((tip.translation - target.translation).norm());
                 self.rotation_rad = self.rotation_rad.max(turned.norm());
             }
-            let mut near = q.map(|q| q + AWAY * numbers.one());
+            let mut near = q.map(|q| q + AWAY * numbers.next_number());
             let mut by_all = near;
             self.reached_by_all += usize::from(is_far && nearest(&target, &mut by_all) < REACHED);
             let begin = Instant::now();
-            let left = black_box(arm.nearest(black_box(&target), black_box(&mut near)));
+            let left = black_box(arm.solve_nearest(black_box(&target), black_box(&mut near)));
             self.nearest_us.push(1e6 * begin.elapsed().as_secs_f32());
             self.reached += usize::from(is_far && left < REACHED);
         }

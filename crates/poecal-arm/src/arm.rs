@@ -4,12 +4,12 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::chain::Chain;
+use crate::arm_state::{ArmState, MOST_JOINTS};
+use crate::chain::LinkChain;
 use crate::lie::{Pose, Screw};
-use crate::model::{Joint, Model};
-use crate::placed::{MOST_JOINTS, Placed};
-use crate::real::Real;
-use crate::rows::{Rows, Wanted};
+use crate::model::{ArmModel, ModelJoint};
+use crate::real_chain::RealChain;
+use crate::rows::{ConfigurationBatch, PassOutputs};
 
 /// Least joint value per reading of a joint that counts as moved by the reading.
 const LEAST_SENSE: f64 = 0.5;
@@ -30,13 +30,13 @@ pub struct Arm {
     /// For each reading, the screw of the joint that it moves, with all readings at 0.
     screws: Vec<Screw>,
     home: Pose,
-    chain: Chain,
+    chain: LinkChain,
     reach_m: f64,
     limits: Vec<(f64, f64)>,
     /// Joint values per reading; `None` if a reading moves several joints.
     senses: Option<Vec<f64>>,
     /// Parts of its joint values beyond their readings.
-    real: Option<Box<Real>>,
+    real: Option<Box<RealChain>>,
 }
 
 impl Arm {
@@ -49,7 +49,7 @@ impl Arm {
         if screws.is_empty() || screws.len() > MOST_JOINTS || !screws.iter().all(is_finite) || !is_home {
             return None;
         }
-        let chain = Chain::new(screws, home);
+        let chain = LinkChain::new(screws, home);
         let limits = vec![(f64::NEG_INFINITY, f64::INFINITY); screws.len()];
         let senses = Some(vec![1.0; screws.len()]);
         let reach_m = chain.length_m.max(1e-3);
@@ -59,12 +59,13 @@ impl Arm {
     /// The arm of a model; `None` if it has no joint, more than [`MOST_JOINTS`] readings, a reading that moves nothing, numbers that are not
     /// finite, or invalid indices.
     #[must_use]
-    pub fn from_model(model: &Model) -> Option<Self> {
+    pub fn from_model(model: &ArmModel) -> Option<Self> {
         if !model.is_whole() {
             return None;
         }
-        let real = Real::new(model);
-        let at_zero = Rows::at(&[0.0; MOST_JOINTS]).placed(|rows| rows.place_real(&real, Wanted::Steps));
+        let real = RealChain::new(model);
+        let at_zero = ConfigurationBatch::from_readings(&[0.0; MOST_JOINTS])
+            .place_with(|rows| rows.place_real(&real, PassOutputs::Steps));
         let mut screws = Vec::with_capacity(model.readings);
         for reading in 0..model.readings {
             let (v, w) = (at_zero.v[reading], at_zero.w[reading]);
@@ -84,7 +85,7 @@ impl Arm {
         for (limits, own) in arm.limits.iter_mut().zip(&model.limits) {
             *limits = own.unwrap_or(*limits);
         }
-        let main = |joint: &Joint| -> Vec<(usize, f64)> {
+        let main = |joint: &ModelJoint| -> Vec<(usize, f64)> {
             let all = joint.value.linear.iter().copied();
             all.filter(|(_, factor)| factor.abs() > LEAST_SENSE).collect()
         };
@@ -102,10 +103,10 @@ impl Arm {
         Some(arm)
     }
 
-    /// The arm of the numbers of a model ([`Model::numbers`]); `None` if they are no model.
+    /// The arm of the numbers of a model ([`ArmModel::numbers`]); `None` if they are no model.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        Arm::from_model(&Model::from_numbers(numbers)?)
+        Arm::from_model(&ArmModel::from_numbers(numbers)?)
     }
 
     /// Number of readings: of the joints that are moved.
@@ -140,7 +141,7 @@ impl Arm {
 
     /// Joints as if their values were their readings, and the parts of the values beyond them.
     #[inline(always)]
-    pub(crate) fn parts(&self) -> (&Chain, Option<&Real>) {
+    pub(crate) fn parts(&self) -> (&LinkChain, Option<&RealChain>) {
         (&self.chain, self.real.as_deref())
     }
 
@@ -160,30 +161,32 @@ impl Arm {
     pub fn forward_kinematics(&self, q: &[f64]) -> Pose {
         // Small arrays are filled faster.
         match self.joints() {
-            ..=6 => self.placed_at(&first::<6>(q)).tip,
-            7 | 8 => self.placed_at(&first::<8>(q)).tip,
-            _ => self.placed(q).tip,
+            ..=6 => self.placed_at(&take_first::<6>(q)).tip,
+            7 | 8 => self.placed_at(&take_first::<8>(q)).tip,
+            _ => self.placement(q).tip,
         }
     }
 
     /// The tip and its motions at readings; missing ones are 0.
-    pub(crate) fn placed(&self, q: &[f64]) -> Placed<MOST_JOINTS> {
-        self.placed_at(&first::<MOST_JOINTS>(q))
+    pub(crate) fn placement(&self, q: &[f64]) -> ArmState<MOST_JOINTS> {
+        self.placed_at(&take_first::<MOST_JOINTS>(q))
     }
 
     /// The same at `N` readings, the number of joints or more.
     #[inline]
-    pub(crate) fn placed_at<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
+    pub(crate) fn placed_at<const N: usize>(&self, q: &[f64; N]) -> ArmState<N> {
         // Parts that only one of the two needs are not computed for the other.
         match &self.real {
-            Some(real) => Rows::at(q).placed(|rows| rows.place_real(real, Wanted::Steps)),
-            None => Rows::at(q).placed(|rows| rows.place_rigid(&self.chain, Wanted::Steps)),
+            Some(real) => ConfigurationBatch::from_readings(q)
+                .place_with(|rows| rows.place_real(real, PassOutputs::Steps)),
+            None => ConfigurationBatch::from_readings(q)
+                .place_with(|rows| rows.place_rigid(&self.chain, PassOutputs::Steps)),
         }
     }
 }
 
 /// The first readings; missing ones are 0.
-pub(crate) fn first<const N: usize>(q: &[f64]) -> [f64; N] {
+pub(crate) fn take_first<const N: usize>(q: &[f64]) -> [f64; N] {
     let mut all = [0.0; N];
     all.iter_mut().zip(q).for_each(|(to, from)| *to = *from);
     all
@@ -193,7 +196,7 @@ impl Arm {
     /// The smallest singular value of the Jacobian at joint values, lengths over [`Arm::reach_m`]: 0 at singularities.
     #[must_use]
     pub fn smallest_singular_value(&self, q: &[f64]) -> f64 {
-        let placed = self.placed(q);
+        let placed = self.placement(q);
         let mut a = nalgebra::Matrix6::<f64>::zeros();
         for index in 0..self.joints() {
             let (mut v, w) = placed.column(index);
@@ -215,12 +218,12 @@ impl Arm {
         if self.joints() != 6 {
             return 0.0;
         }
-        let determinant = self.minor(&self.placed(q), [0, 1, 2, 3, 4, 5]);
+        let determinant = self.minor(&self.placement(q), [0, 1, 2, 3, 4, 5]);
         if determinant == 0.0 { 0.0 } else { determinant.signum() }
     }
 
     /// Determinant of the columns of six joints, lengths over [`Arm::reach_m`].
-    pub(crate) fn minor<const N: usize>(&self, placed: &Placed<N>, joints: [usize; 6]) -> f64 {
+    pub(crate) fn minor<const N: usize>(&self, placed: &ArmState<N>, joints: [usize; 6]) -> f64 {
         let mut rows = [[0.0; 6]; 6];
         for (column, joint) in joints.into_iter().enumerate() {
             let (mut v, w) = placed.column(joint);
@@ -231,7 +234,7 @@ impl Arm {
                 row[column] = value;
             }
         }
-        crate::small::determinant(&mut rows)
+        crate::small_systems::determinant(&mut rows)
     }
 }
 

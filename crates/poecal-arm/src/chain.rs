@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
+use crate::arm_state::frame_on_axis;
 use crate::lie::{Pose, Screw, rotation};
-use crate::placed::along;
 
 /// Sine of the angle between two axes below which any direction across both serves.
 const PARALLEL: f64 = 1e-9;
@@ -18,10 +18,10 @@ const PARALLEL: f64 = 1e-9;
 /// one angle about x and one about its own z, to which the joint's value is added. Origins are the points of an axis nearest to the origin
 /// before. So lengths stay those of the arm also if axes are almost parallel.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Chain {
+pub(crate) struct LinkChain {
     /// First frame in the base before its joint moves.
     pub(crate) start: Pose,
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Vec<ChainLink>,
     /// Tip in the frame of the last joint.
     pub(crate) tip: Pose,
     /// Length of the path from the first axis over all axes to the tip, metres.
@@ -29,7 +29,7 @@ pub(crate) struct Chain {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Link {
+pub(crate) struct ChainLink {
     /// Origin in the frame before.
     pub(crate) origin: Vector3<f64>,
     /// Cosine and sine of the angle about x from the axis before.
@@ -39,13 +39,13 @@ pub(crate) struct Link {
     pub(crate) slides: bool,
 }
 
-impl Chain {
+impl LinkChain {
     /// The chain of screws (base frame, at zero) and the tip there.
     pub(crate) fn new(screws: &[Screw], home: &Pose) -> Self {
         let axes: Vec<Pose> = {
             let mut before = Vector3::zeros();
             let mut place = |screw: &Screw| {
-                let frame = along(screw, &before);
+                let frame = frame_on_axis(screw, &before);
                 before = frame.translation;
                 frame
             };
@@ -59,7 +59,7 @@ impl Chain {
             let x = if cross.norm() < PARALLEL { old } else { cross.normalize() };
             let x = x - z * z.dot(&x);
             let size = x.norm();
-            if size < 0.5 { rotation::perpendicular(&z) } else { x / size }
+            if size < 0.5 { rotation::perpendicular_to(&z) } else { x / size }
         };
         let mut links = Vec::with_capacity(screws.len());
         let mut length_m = 0.0;
@@ -72,7 +72,7 @@ impl Chain {
             let slides = screw.is_prismatic();
             if k == 0 {
                 start = frame;
-                links.push(Link { origin: Vector3::zeros(), tilt: (1.0, 0.0), turned: 0.0, slides });
+                links.push(ChainLink { origin: Vector3::zeros(), tilt: (1.0, 0.0), turned: 0.0, slides });
                 continue;
             }
             length_m += (frame.translation - old.translation).norm();
@@ -83,10 +83,15 @@ impl Chain {
             let size = c.hypot(s);
             let tilt = (c / size, s / size);
             let turned = (side.y * tilt.0 + side.z * tilt.1).atan2(side.x);
-            links.push(Link { origin: before(frame.translation - old.translation), tilt, turned, slides });
+            links.push(ChainLink {
+                origin: before(frame.translation - old.translation),
+                tilt,
+                turned,
+                slides,
+            });
         }
         length_m += (home.translation - frame.translation).norm();
-        Chain { start, links, tip: frame.inverse() * *home, length_m }
+        LinkChain { start, links, tip: frame.inverse() * *home, length_m }
     }
 
     /// Number of joints.

@@ -8,11 +8,11 @@
 //! | to | see |
 //! |---|---|
 //! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
-//! | have joints that turn more than their readings | [`Model`], [`Arm::from_model`] |
+//! | have joints that turn more than their readings | [`ArmModel`], [`Arm::from_model`] |
 //! | know the parts of joint values beyond readings, with derivatives | [`TermKind`], [`Term`] |
 //! | have many poses, Jacobians, or deflections under weights | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
-//! | move the tip to a pose, from the current configuration | [`Arm::nearest`] |
-//! | correct readings of a program for the nominal arm | [`Corrections`] |
+//! | move the tip to a pose, from the current configuration | [`Arm::solve_nearest`] |
+//! | correct readings of a program for the nominal arm | [`ReadingCorrections`] |
 //! | know all configurations for a pose | [`AllBranches`]; of seven axes with one held, [`HeldBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //!
@@ -27,6 +27,7 @@ extern crate alloc;
 extern crate std;
 
 mod arm;
+mod arm_state;
 mod branches;
 mod chain;
 mod correction;
@@ -35,17 +36,18 @@ mod model;
 mod motions;
 mod newton;
 mod numbers;
-mod placed;
-mod real;
+mod real_chain;
 mod rows;
-mod small;
+mod small_systems;
 mod terms;
 pub mod trig;
 mod zeros;
 
 pub use arm::Arm;
+pub use arm_state::MOST_JOINTS;
 pub use branches::{AllBranches, Branches, HeldBranches, MOST_BRANCHES};
-pub use correction::{Correction, Corrections, MostChange, Outcome};
-pub use model::{Curve, Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
-pub use placed::MOST_JOINTS;
-pub use terms::{Argument, Function, GroupRow, Term, TermGroup, TermKind, TermRow};
+pub use correction::{CorrectionOutcome, CorrectionResidual, MaxCorrection, ReadingCorrections};
+pub use model::{
+    ArmModel, GravityTorque, JointValue, ModelJoint, NominalJoint, PulledWeight, TermCurve, Wave,
+};
+pub use terms::{GroupRow, Term, TermArgument, TermFunction, TermGroup, TermKind, TermRow};

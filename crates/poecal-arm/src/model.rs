@@ -4,33 +4,33 @@ use alloc::vec::Vec;
 
 use nalgebra::Vector3;
 
+use crate::arm_state::MOST_JOINTS;
 use crate::lie::{Pose, Screw};
-use crate::placed::MOST_JOINTS;
 use crate::terms::Term;
 
 /// A serial arm as calibration estimates it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that
 /// are functions of them ([`JointValue`]). Joints without a reading are compliances of links.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model {
+pub struct ArmModel {
     /// Number of readings n.
     pub readings: usize,
     /// Joints from the base to the tip.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<ModelJoint>,
     /// Tip in the base with all joint values at 0.
     pub home: Pose,
     /// Direction of gravity, base frame, of length 1.
     pub gravity: Vector3<f64>,
     /// Nominal arm, by which moments of weights are computed.
-    pub drawing: Vec<Drawn>,
+    pub drawing: Vec<NominalJoint>,
     /// Smallest and largest value of each reading (rad, m), if it has limits.
     pub limits: Vec<Option<(f64, f64)>>,
 }
 
-impl Model {
+impl ArmModel {
     /// An arm without joints.
     #[must_use]
     pub fn new(readings: usize, home: &Pose) -> Self {
-        Model {
+        ArmModel {
             readings,
             joints: Vec::new(),
             home: *home,
@@ -43,7 +43,7 @@ impl Model {
 
 /// A joint and its value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
+pub struct ModelJoint {
     /// Screw in the base with all joint values at 0.
     pub screw: Screw,
     /// Value.
@@ -60,9 +60,9 @@ pub struct JointValue {
     /// Periodic parts.
     pub waves: Vec<Wave>,
     /// Compliance under weights.
-    pub pull: Option<Pull>,
+    pub pull: Option<GravityTorque>,
     /// Other functions.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<TermCurve>,
 }
 
 impl JointValue {
@@ -100,7 +100,7 @@ pub struct Wave {
 
 /// A part of a joint's value that is another function of the table of terms ([`crate::TermKind`]), `k b(x)` with `x = c + Σ fᵢ qᵢ + moments`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct TermCurve {
     /// Term with the function b.
     pub term: Term,
     /// Coefficient k (rad, m).
@@ -110,13 +110,13 @@ pub struct Curve {
     /// Readings, and the argument per unit of each.
     pub linear: Vec<(usize, f64)>,
     /// Moments in the argument, of weights by their part of it.
-    pub pull: Option<Pull>,
+    pub pull: Option<GravityTorque>,
 }
 
 /// Deflection of a joint under weights: `Σ z·((p - o) × ĝ)` with the axis z through o; a weight at p counts by the rotation of the joint per
 /// metre of lever. For a prismatic joint it is `Σ z·ĝ`. All positions are those of the nominal arm.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pull {
+pub struct GravityTorque {
     /// Number of the nominal joints before it.
     pub after: usize,
     /// True if it is prismatic.
@@ -142,7 +142,7 @@ pub struct PulledWeight {
 
 /// A joint of the nominal arm, whose value is `f q + c`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn {
+pub struct NominalJoint {
     /// Screw in the base at zero.
     pub screw: Screw,
     /// Index of its reading.
@@ -153,13 +153,13 @@ pub struct Drawn {
     pub constant: f64,
 }
 
-impl Model {
+impl ArmModel {
     /// True if all numbers are finite and all indices are valid.
     pub(crate) fn is_whole(&self) -> bool {
         let finite = |v: &Vector3<f64>| v.iter().all(|it| it.is_finite());
         let screw = |it: &Screw| finite(&it.v()) && finite(&it.w());
         let reading = |it: usize| it < self.readings;
-        let drawn = |it: &Drawn| {
+        let drawn = |it: &NominalJoint| {
             screw(&it.screw) && reading(it.reading) && it.factor.is_finite() && it.constant.is_finite()
         };
         let wave = |it: &Wave| {
@@ -168,20 +168,20 @@ impl Model {
         };
         let weight =
             |it: &PulledWeight| it.after <= self.drawing.len() && it.size.is_finite() && finite(&it.place);
-        let pull = |it: &Pull| {
+        let pull = |it: &GravityTorque| {
             it.after <= self.drawing.len()
                 && finite(&it.direction)
                 && finite(&it.place)
                 && it.weights.iter().all(weight)
         };
         let linear = |it: &(usize, f64)| reading(it.0) && it.1.is_finite();
-        let curve = |it: &Curve| {
+        let curve = |it: &TermCurve| {
             it.coefficient.is_finite()
                 && it.constant.is_finite()
                 && it.linear.iter().all(linear)
                 && it.pull.iter().all(pull)
         };
-        let joint = |it: &Joint| {
+        let joint = |it: &ModelJoint| {
             screw(&it.screw)
                 && it.value.constant.is_finite()
                 && it.value.linear.iter().all(linear)

@@ -2,15 +2,15 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::newton::Left;
-use crate::placed::{MOST_JOINTS, Placed};
+use crate::arm_state::{ArmState, MOST_JOINTS};
+use crate::newton::TipResidual;
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
 /// Motions of an arm to first order: with the tip's point at rest, and moving.
-pub(crate) struct Ways {
+pub(crate) struct FirstOrderMotions {
     n: usize,
     /// Motions of the point, over the reach, and rotations.
     columns: [(Vector3<f64>, Vector3<f64>); MOST_JOINTS],
@@ -18,13 +18,17 @@ pub(crate) struct Ways {
     inverse: Option<Matrix3<f64>>,
 }
 
-impl Ways {
-    pub(crate) fn from_placement(placed: &Placed<MOST_JOINTS>, n: usize, scale: impl Fn(usize) -> f64) -> Self {
+impl FirstOrderMotions {
+    pub(crate) fn from_placement(
+        placed: &ArmState<MOST_JOINTS>,
+        n: usize,
+        scale: impl Fn(usize) -> f64,
+    ) -> Self {
         let columns = core::array::from_fn(|joint| {
             let (v, w) = placed.column(joint);
             if joint < n { (v * scale(joint), w) } else { (Vector3::zeros(), Vector3::zeros()) }
         });
-        let mut ways = Ways { n, columns, inverse: None };
+        let mut ways = FirstOrderMotions { n, columns, inverse: None };
         ways.invert();
         ways
     }
@@ -52,9 +56,9 @@ impl Ways {
 
     /// Changes from the zeros that remove the remainder, from the present changes. The other joints take over from a joint at its limit, up
     /// to their own limits.
-    pub(crate) fn least(
+    pub(crate) fn least_correction(
         mut self,
-        left: &Left,
+        left: &TipResidual,
         inverse_reach: f64,
         from: &[f64],
         most: &[f64],

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use crate::arm::Arm;
+use crate::arm_state::{ArmState, MOST_JOINTS};
 use crate::lie::{Pose, rotation};
-use crate::placed::{MOST_JOINTS, Placed};
-use crate::small;
+use crate::small_systems;
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -23,12 +23,12 @@ const LONGEST_STEP: f64 = 0.5;
 
 /// Remainder from the tip to its goal: position (m) and rotation vector (rad), both in the base.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Left {
+pub(crate) struct TipResidual {
     pub(crate) position: Vector3<f64>,
     pub(crate) rotation: Vector3<f64>,
 }
 
-impl Left {
+impl TipResidual {
     #[inline]
     pub(crate) fn new(tip: &Pose, target: &Pose) -> Self {
         let column = |k: usize| tip.rotation.column(k).cross(&target.rotation.column(k));
@@ -41,12 +41,12 @@ impl Left {
         } else {
             rotation::log(&(target.rotation * tip.rotation.transpose()))
         };
-        Left { position: target.translation - tip.translation, rotation }
+        TipResidual { position: target.translation - tip.translation, rotation }
     }
 
     /// Square of the remainder, lengths over a reach, whose inverse is passed.
     #[inline]
-    pub(crate) fn squared(&self, inverse_reach: f64) -> f64 {
+    pub(crate) fn squared_norm(&self, inverse_reach: f64) -> f64 {
         self.position.norm_squared() * (inverse_reach * inverse_reach) + self.rotation.norm_squared()
     }
 }
@@ -58,21 +58,21 @@ fn angle_of(sine: Vector3<f64>, squared: f64) -> Vector3<f64> {
 
 /// Six joints of an arm that has six, or seven with one held.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Six<'a> {
+pub(crate) struct SixJoints<'a> {
     arm: &'a Arm,
     /// Index of the held joint, and its reading.
     held: Option<(usize, f64)>,
 }
 
-impl<'a> Six<'a> {
+impl<'a> SixJoints<'a> {
     /// All joints of an arm of six.
     pub(crate) fn from_arm(arm: &'a Arm) -> Self {
-        Six { arm, held: None }
+        SixJoints { arm, held: None }
     }
 
     /// Six joints of an arm of seven, without the held one.
-    pub(crate) fn without(arm: &'a Arm, joint: usize, reading: f64) -> Self {
-        Six { arm, held: Some((joint, reading)) }
+    pub(crate) fn with_held_joint(arm: &'a Arm, joint: usize, reading: f64) -> Self {
+        SixJoints { arm, held: Some((joint, reading)) }
     }
 
     /// Readings including that of the held joint.
@@ -102,21 +102,21 @@ impl<'a> Six<'a> {
     }
 
     pub(crate) fn tip(&self, q: &[f64; 6]) -> Pose {
-        self.placed(q).tip
+        self.placement(q).tip
     }
 
     #[inline]
-    fn placed(&self, q: &[f64; 6]) -> Placed<6> {
+    fn placement(&self, q: &[f64; 6]) -> ArmState<6> {
         let Some(held) = self.held else { return self.arm.placed_at(q) };
         let all = self.arm.placed_at(&Self::all(q, held));
         let of = |vectors: &[Vector3<f64>; 7]| core::array::from_fn(|joint| vectors[self.index(joint)]);
-        Placed { v: of(&all.v), w: of(&all.w), tip: all.tip }
+        ArmState { v: of(&all.v), w: of(&all.w), tip: all.tip }
     }
 }
 
 /// Column of a joint: motion of the tip's point (over the reach) and its rotation.
 #[inline]
-fn column<const N: usize>(arm: &Arm, placed: &Placed<N>, joint: usize, inverse_reach: f64) -> [f64; 6] {
+fn column<const N: usize>(arm: &Arm, placed: &ArmState<N>, joint: usize, inverse_reach: f64) -> [f64; 6] {
     let (mut v, w) = placed.column(joint);
     // A step of a prismatic joint is counted in reaches, so that it is of the size of an angle.
     if !arm.screws()[joint].is_prismatic() {
@@ -128,8 +128,8 @@ fn column<const N: usize>(arm: &Arm, placed: &Placed<N>, joint: usize, inverse_r
 /// Columns of six joints: motion of the tip's point (over the reach) and its rotation.
 #[inline(always)]
 fn columns_of_six(
-    arm: &Six<'_>,
-    placed: &Placed<6>,
+    arm: &SixJoints<'_>,
+    placed: &ArmState<6>,
     inverse_reach: f64,
 ) -> [(Vector3<f64>, Vector3<f64>); 6] {
     let of = |joint: usize| {
@@ -142,10 +142,15 @@ fn columns_of_six(
 
 /// Step of six joints that removes the remainder, to first order.
 #[inline]
-fn step_of_six(arm: &Six<'_>, placed: &Placed<6>, left: &Left, inverse_reach: f64) -> Option<[f64; 6]> {
+fn step_of_six(
+    arm: &SixJoints<'_>,
+    placed: &ArmState<6>,
+    left: &TipResidual,
+    inverse_reach: f64,
+) -> Option<[f64; 6]> {
     let p = left.position * inverse_reach;
     let columns = columns_of_six(arm, placed, inverse_reach);
-    if let Some(step) = small::solve_halves(&columns, (p, left.rotation), 1e-4) {
+    if let Some(step) = small_systems::solve_halves(&columns, (p, left.rotation), 1e-4) {
         return Some(step);
     }
     let mut a = [[0.0; 6]; 6];
@@ -156,25 +161,25 @@ fn step_of_six(arm: &Six<'_>, placed: &Placed<6>, left: &Left, inverse_reach: f6
     }
     let w = left.rotation;
     let mut step = [p.x, p.y, p.z, w.x, w.y, w.z];
-    small::solve(&mut a, &mut step, 1e-14)?;
+    small_systems::solve(&mut a, &mut step, 1e-14)?;
     Some(step)
 }
 
 /// Undamped steps of six joints, as long as they bring the tip closer. `q` becomes the best configuration that was met;
 /// returns its remainder (lengths over reach, rad).
-pub(crate) fn newton(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
+pub(crate) fn newton(arm: &SixJoints<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
     newton_judged(arm, target, q, most).0
 }
 
 /// The same steps, with the ratio of the second step to the first; 1 if the first was too long to be taken. If another configuration is as near
 /// to the reached one as the start was, this is about 1 (kantorovich1948).
-pub(crate) fn newton_judged(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> (f64, f64) {
+pub(crate) fn newton_judged(arm: &SixJoints<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> (f64, f64) {
     let (mut first, mut ratio) = (0.0, 0.0_f64);
     let reach = arm.reach_m();
     let inverse_reach = 1.0 / reach;
-    let mut placed = arm.placed(q);
-    let mut left = Left::new(&placed.tip, target);
-    let mut squared = left.squared(inverse_reach);
+    let mut placed = arm.placement(q);
+    let mut left = TipResidual::new(&placed.tip, target);
+    let mut squared = left.squared_norm(inverse_reach);
     let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
     let mut steps = 0;
     while steps < most && squared > enough * enough {
@@ -192,9 +197,9 @@ pub(crate) fn newton_judged(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most
             for (joint, (it, step)) in next.iter_mut().zip(step).enumerate() {
                 *it += share * step * if arm.slides(joint) { reach } else { 1.0 };
             }
-            let there = arm.placed(&next);
-            let left_there = Left::new(&there.tip, target);
-            let squared_there = left_there.squared(inverse_reach);
+            let there = arm.placement(&next);
+            let left_there = TipResidual::new(&there.tip, target);
+            let squared_there = left_there.squared_norm(inverse_reach);
             if squared_there < squared {
                 (*q, placed, left, squared) = (next, there, left_there, squared_there);
                 is_closer = true;
@@ -212,12 +217,12 @@ pub(crate) fn newton_judged(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most
 
 /// Damped steps (Levenberg-Marquardt) of any number of joints, the least motion that brings the tip closer;
 /// returns the remainder.
-pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 {
+pub(crate) fn solve_damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 {
     let reach = arm.reach_m();
     let n = arm.joints().min(q.len());
-    let mut placed = arm.placed(q);
-    let mut left = Left::new(&placed.tip, target);
-    let mut squared = left.squared(1.0 / reach);
+    let mut placed = arm.placement(q);
+    let mut left = TipResidual::new(&placed.tip, target);
+    let mut squared = left.squared_norm(1.0 / reach);
     let mut damping = 1e-4 * squared.min(1.0);
     let mut steps = 0;
     let enough = if arm.is_rigid() { ROUNDED } else { SMALL };
@@ -240,9 +245,9 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
             let unit = if arm.screws()[joint].is_prismatic() { reach } else { 1.0 };
             *it = old + share * step[joint] * unit;
         }
-        let there = arm.placed(&next[..n]);
-        let left_there = Left::new(&there.tip, target);
-        let squared_there = left_there.squared(1.0 / reach);
+        let there = arm.placement(&next[..n]);
+        let left_there = TipResidual::new(&there.tip, target);
+        let squared_there = left_there.squared_norm(1.0 / reach);
         if squared_there < squared {
             q[..n].copy_from_slice(&next[..n]);
             damping = (damping * if squared_there < 0.25 * squared { 0.01 } else { 0.3 }).max(1e-18);
@@ -279,7 +284,7 @@ fn damped_step(
             row[i] += damping;
         }
         let mut x = e;
-        let is_solved = small::solve_symmetric(&mut a, &mut x, 6).is_some();
+        let is_solved = small_systems::solve_symmetric(&mut a, &mut x, 6).is_some();
         for (it, column) in step.iter_mut().zip(columns).take(n) {
             *it = column.iter().zip(x).map(|(column, x)| column * x).sum();
         }
@@ -293,7 +298,7 @@ fn damped_step(
             a[i][i] += damping;
             step[i] = columns[i].iter().zip(e).map(|(column, e)| column * e).sum();
         }
-        small::solve_symmetric(&mut a, &mut step, n).is_some()
+        small_systems::solve_symmetric(&mut a, &mut step, n).is_some()
     };
     is_solved.then_some(step)
 }
@@ -316,19 +321,19 @@ impl Arm {
     /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 1.0))).unwrap();
     /// let target = arm.forward_kinematics(&[0.3, 0.2, 0.4, 0.5, 0.6, 0.7, 0.2]);
     /// let mut q = [0.2; 7];
-    /// assert!(arm.nearest(&target, &mut q) < 1e-12);
+    /// assert!(arm.solve_nearest(&target, &mut q) < 1e-12);
     /// ```
-    pub fn nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
+    pub fn solve_nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
         if let Ok(six) = <&mut [f64; 6]>::try_from(&mut *q)
             && self.joints() == 6
         {
             let mut undamped = *six;
-            let left = newton(&Six::from_arm(self), target, &mut undamped, MOST_STEPS);
+            let left = newton(&SixJoints::from_arm(self), target, &mut undamped, MOST_STEPS);
             if left < REACHED {
                 *six = undamped;
                 return left;
             }
         }
-        damped(self, target, q, MOST_DAMPED)
+        solve_damped(self, target, q, MOST_DAMPED)
     }
 }

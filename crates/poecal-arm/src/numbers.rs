@@ -5,9 +5,11 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::arm_state::MOST_JOINTS;
 use crate::lie::{Pose, Screw};
-use crate::model::{Curve, Drawn, Joint, JointValue, Model, Pull, PulledWeight, Wave};
-use crate::placed::MOST_JOINTS;
+use crate::model::{
+    ArmModel, GravityTorque, JointValue, ModelJoint, NominalJoint, PulledWeight, TermCurve, Wave,
+};
 
 /// First number of a list, the version of its order: without curves, and with them.
 const VERSIONS: [f64; 2] = [1.0, 2.0];
@@ -16,7 +18,7 @@ const UNLIMITED: f64 = 1e300;
 /// Largest number of joints, waves or weights of a list.
 const MOST: usize = 1000;
 
-impl Model {
+impl ArmModel {
     /// All numbers of the model (m, rad), in this order. First come 1 (the version; 2 with curves); the numbers of readings, joints and nominal
     /// joints; home as three rows of rotation and translation; gravity; for each reading its smallest and largest value (±1e300 without a limit). For
     /// each joint follow its axis, constant, the number of its linear parts with (reading, factor) each, the number of its waves with (reading,
@@ -28,7 +30,7 @@ impl Model {
     #[must_use]
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::new();
-        let curves: Vec<(usize, &Curve)> = (self.joints.iter().enumerate())
+        let curves: Vec<(usize, &TermCurve)> = (self.joints.iter().enumerate())
             .flat_map(|(at, joint)| joint.value.curves.iter().map(move |curve| (at, curve)))
             .collect();
         let version = VERSIONS[usize::from(!curves.is_empty())];
@@ -50,7 +52,7 @@ impl Model {
                 if screw.is_prismatic() { Vector3::zeros() } else { screw.nearest_point(&Vector3::zeros()) };
             out.extend(point.iter());
         };
-        for Joint { screw, value } in &self.joints {
+        for ModelJoint { screw, value } in &self.joints {
             axis(&mut out, screw);
             out.push(value.constant);
             write_linear(&mut out, &value.linear);
@@ -81,7 +83,7 @@ impl Model {
     /// The model of such numbers; `None` if they are no model.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        let mut rest = Rest(numbers);
+        let mut rest = RemainingNumbers(numbers);
         let version = rest.number()?;
         if !VERSIONS.contains(&version) {
             return None;
@@ -97,7 +99,7 @@ impl Model {
             }
             translation[row] = rest.number()?;
         }
-        let mut model = Model::new(readings, &Pose::new(rotation, translation));
+        let mut model = ArmModel::new(readings, &Pose::new(rotation, translation));
         model.gravity = rest.vector()?;
         for _ in 0..readings {
             let (low, high) = (rest.number()?, rest.number()?);
@@ -119,12 +121,12 @@ impl Model {
                 });
             }
             value.pull = rest.pull()?;
-            model.joints.push(Joint { screw, value });
+            model.joints.push(ModelJoint { screw, value });
         }
         for _ in 0..drawn {
             let screw = rest.axis()?;
             let (reading, factor, constant) = (rest.count()?, rest.number()?, rest.number()?);
-            model.drawing.push(Drawn { screw, reading, factor, constant });
+            model.drawing.push(NominalJoint { screw, reading, factor, constant });
         }
         let curves = if version == VERSIONS[0] { 0 } else { rest.count()? };
         for _ in 0..curves {
@@ -142,7 +144,7 @@ fn write_linear(out: &mut Vec<f64>, linear: &[(usize, f64)]) {
     }
 }
 
-fn write_pull(out: &mut Vec<f64>, pull: Option<&Pull>) {
+fn write_pull(out: &mut Vec<f64>, pull: Option<&GravityTorque>) {
     let weights = pull.map_or(0, |pull| pull.weights.len());
     out.push(weights as f64);
     if let Some(pull) = pull.filter(|_| weights > 0) {
@@ -156,9 +158,9 @@ fn write_pull(out: &mut Vec<f64>, pull: Option<&Pull>) {
 }
 
 /// Numbers that are still to be read.
-struct Rest<'a>(&'a [f64]);
+struct RemainingNumbers<'a>(&'a [f64]);
 
-impl Rest<'_> {
+impl RemainingNumbers<'_> {
     fn number(&mut self) -> Option<f64> {
         let (first, rest) = self.0.split_first()?;
         self.0 = rest;
@@ -180,14 +182,14 @@ impl Rest<'_> {
     }
 
     /// Weights, if there are any; `None` if the numbers are no model.
-    fn pull(&mut self) -> Option<Option<Pull>> {
+    fn pull(&mut self) -> Option<Option<GravityTorque>> {
         let weights = self.count()?;
         if weights == 0 {
             return Some(None);
         }
         let (after, slides) = (self.count()?, self.number()? != 0.0);
         let (direction, place) = (self.vector()?, self.vector()?);
-        let mut pull = Pull { after, slides, direction, place, weights: Vec::new() };
+        let mut pull = GravityTorque { after, slides, direction, place, weights: Vec::new() };
         for _ in 0..weights {
             let (after, size, place) = (self.count()?, self.number()?, self.vector()?);
             pull.weights.push(PulledWeight { after, size, place });
@@ -195,12 +197,12 @@ impl Rest<'_> {
         Some(Some(pull))
     }
 
-    fn curve(&mut self) -> Option<Curve> {
+    fn curve(&mut self) -> Option<TermCurve> {
         let coefficient = self.number()?;
         let letter = |code: usize| char::from_u32(u32::try_from(code).ok()?);
         let name: String = (0..self.count()?).map(|_| letter(self.count()?)).collect::<Option<_>>()?;
         let (term, constant) = (name.parse().ok()?, self.number()?);
-        Some(Curve { term, coefficient, constant, linear: self.linear()?, pull: self.pull()? })
+        Some(TermCurve { term, coefficient, constant, linear: self.linear()?, pull: self.pull()? })
     }
 
     fn axis(&mut self) -> Option<Screw> {
@@ -226,21 +228,21 @@ mod tests {
     #[test]
     fn a_model_comes_back_from_its_numbers() {
         let screw = Screw::revolute(&Vector3::z(), &Vector3::x());
-        let mut model = Model::new(1, &Pose::identity());
-        model.joints.push(Joint { screw, value: JointValue::from_reading(0) });
+        let mut model = ArmModel::new(1, &Pose::identity());
+        model.joints.push(ModelJoint { screw, value: JointValue::from_reading(0) });
         let numbers = model.numbers();
         assert_eq!(numbers[..4], [1.0, 1.0, 1.0, 0.0]);
-        assert_eq!(Model::from_numbers(&numbers).unwrap().numbers(), numbers);
+        assert_eq!(ArmModel::from_numbers(&numbers).unwrap().numbers(), numbers);
 
-        let (term, linear) = (TermKind::Sine.numbered(3), [(0, 2.0)].to_vec());
-        model.joints[0].value.curves.push(Curve {
+        let (term, linear) = (TermKind::Sine.with_number(3), [(0, 2.0)].to_vec());
+        model.joints[0].value.curves.push(TermCurve {
             term,
             coefficient: 0.1,
             constant: 0.2,
             linear,
             pull: None,
         });
-        let again = Model::from_numbers(&model.numbers()).unwrap();
+        let again = ArmModel::from_numbers(&model.numbers()).unwrap();
         assert_eq!((model.numbers()[0], again.joints), (2.0, model.joints));
     }
 }

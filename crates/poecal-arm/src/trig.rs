@@ -57,7 +57,7 @@ fn polynomial(z: f64, c: &[f64; 6]) -> f64 {
 
 /// The same angle in (-π, π].
 #[must_use]
-pub fn wrapped(angle_rad: f64) -> f64 {
+pub fn wrap_angle(angle_rad: f64) -> f64 {
     let turns = (angle_rad / TAU).round();
     let angle = angle_rad - turns * TAU;
     if angle <= -core::f64::consts::PI { angle + TAU } else { angle }
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn angles_are_wrapped_to_half_a_turn() {
-        assert!((wrapped(7.0) - (7.0 - TAU)).abs() < 1e-15);
-        assert_eq!(wrapped(-core::f64::consts::PI), core::f64::consts::PI);
+        assert!((wrap_angle(7.0) - (7.0 - TAU)).abs() < 1e-15);
+        assert_eq!(wrap_angle(-core::f64::consts::PI), core::f64::consts::PI);
     }
 }

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use crate::arm::Arm;
-use crate::newton::Left;
-use crate::placed::MOST_JOINTS;
-use crate::small;
+use crate::arm_state::MOST_JOINTS;
+use crate::newton::TipResidual;
+use crate::small_systems;
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -38,8 +38,8 @@ pub(crate) fn zeros(nominal: &Arm, actual: &Arm) -> [f64; MOST_JOINTS] {
         for row in 0..CONFIGURATIONS {
             let meant = configuration(nominal, row);
             let q: [f64; MOST_JOINTS] = core::array::from_fn(|joint| meant[joint] + zeros[joint]);
-            let placed = actual.placed(&q[..n]);
-            let left = Left::new(&placed.tip, &nominal.forward_kinematics(&meant[..n]));
+            let placed = actual.placement(&q[..n]);
+            let left = TipResidual::new(&placed.tip, &nominal.forward_kinematics(&meant[..n]));
             let (p, w) = (left.position / reach, left.rotation);
             squares += p.norm_squared() + w.norm_squared();
             let columns: [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] = core::array::from_fn(|joint| {
@@ -66,7 +66,7 @@ pub(crate) fn zeros(nominal: &Arm, actual: &Arm) -> [f64; MOST_JOINTS] {
         for (joint, row) in damped.iter_mut().enumerate().take(n) {
             row[joint] += damping * f64::from(CONFIGURATIONS);
         }
-        if small::solve_symmetric(&mut damped, &mut step, n).is_none() {
+        if small_systems::solve_symmetric(&mut damped, &mut step, n).is_none() {
             return [0.0; MOST_JOINTS];
         }
         let longest = step.iter().fold(0.0_f64, |most, it| most.max(it.abs()));

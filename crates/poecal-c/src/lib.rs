@@ -19,7 +19,7 @@ use core::slice;
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_arm::{AllBranches, Arm, Corrections, MostChange, Outcome};
+use poecal_arm::{AllBranches, Arm, CorrectionOutcome, MaxCorrection, ReadingCorrections};
 
 /// Most readings of an arm.
 pub const POECAL_MOST_JOINTS: usize = 16;
@@ -55,7 +55,7 @@ pub const POECAL_TOO_FAR: i32 = 4;
 
 /// Corrections of readings.
 pub struct PoecalCorrections {
-    corrections: Corrections,
+    corrections: ReadingCorrections,
 }
 
 /// Outcome of a correction of readings.
@@ -171,13 +171,13 @@ pub unsafe extern "C" fn poecal_nearest(arm: *const PoecalArm, pose: *const f64,
     }
     // SAFETY: by the contract above.
     let q = unsafe { slice::from_raw_parts_mut(q, arm.arm.joints()) };
-    nearest(arm, &target, q)
+    solve_nearest(arm, &target, q)
 }
 
-fn nearest(arm: &PoecalArm, target: &Pose, q: &mut [f64]) -> PoecalLeft {
+fn solve_nearest(arm: &PoecalArm, target: &Pose, q: &mut [f64]) -> PoecalLeft {
     match (&arm.branches, <&mut [f64; 6]>::try_from(&mut *q)) {
-        (Some(branches), Ok(six)) => branches.nearest(target, six),
-        (None, _) | (_, Err(_)) => arm.arm.nearest(target, q),
+        (Some(branches), Ok(six)) => branches.solve_nearest(target, six),
+        (None, _) | (_, Err(_)) => arm.arm.solve_nearest(target, q),
     };
     let tip = arm.arm.forward_kinematics(q);
     let turn: Vector3<f64> = rotation::log(&(tip.rotation.transpose() * target.rotation));
@@ -196,7 +196,7 @@ pub unsafe extern "C" fn poecal_branches(arm: *const PoecalArm, pose: *const f64
     let Some(branches) = arm.branches.as_ref().filter(|_| !q.is_null()) else { return -1 };
     // SAFETY: by the contract above.
     let q = unsafe { slice::from_raw_parts_mut(q, 6 * POECAL_MOST_BRANCHES) };
-    let found = branches.at(&target);
+    let found = branches.branches_at(&target);
     for (out, branch) in q.chunks_exact_mut(6).zip(found.as_slice()) {
         out.copy_from_slice(branch);
     }
@@ -221,8 +221,8 @@ pub unsafe extern "C" fn poecal_corrections_new(
         return core::ptr::null_mut();
     };
     let is_size = |it: f64| it > 0.0 && it.is_finite();
-    let most = MostChange { turning_rad: most_turn_rad, sliding_m: most_slide_m };
-    let corrections = Corrections::new(&nominal.arm, &actual.arm, most);
+    let most = MaxCorrection { turning_rad: most_turn_rad, sliding_m: most_slide_m };
+    let corrections = ReadingCorrections::new(&nominal.arm, &actual.arm, most);
     match corrections.filter(|_| is_size(most_turn_rad) && is_size(most_slide_m)) {
         Some(corrections) => Box::into_raw(Box::new(PoecalCorrections { corrections })),
         None => core::ptr::null_mut(),
@@ -258,7 +258,7 @@ pub unsafe extern "C" fn poecal_compensate(
     if meant.is_null() || q.is_null() {
         return nothing;
     }
-    let joints = it.corrections.actual().joints();
+    let joints = it.corrections.actual_arm().joints();
     let mut all = [0.0; POECAL_MOST_JOINTS];
     // SAFETY: by the contract above; read before written, so that both may be the same.
     all[..joints].copy_from_slice(unsafe { slice::from_raw_parts(meant, joints) });
@@ -266,11 +266,11 @@ pub unsafe extern "C" fn poecal_compensate(
     let q = unsafe { slice::from_raw_parts_mut(q, joints) };
     let found = it.corrections.correct(&all[..joints], None, q);
     let outcome = match found.outcome {
-        Outcome::Reached => POECAL_REACHED,
-        Outcome::Turned => POECAL_TURNED,
-        Outcome::Nearest if joints < 6 => POECAL_NEAREST,
-        Outcome::Nearest => POECAL_OUT_OF_REACH,
-        Outcome::TooFar(..) => POECAL_TOO_FAR,
+        CorrectionOutcome::Reached => POECAL_REACHED,
+        CorrectionOutcome::Turned => POECAL_TURNED,
+        CorrectionOutcome::Nearest if joints < 6 => POECAL_NEAREST,
+        CorrectionOutcome::Nearest => POECAL_OUT_OF_REACH,
+        CorrectionOutcome::TooFar(..) => POECAL_TOO_FAR,
     };
     if outcome >= POECAL_OUT_OF_REACH {
         q.copy_from_slice(&all[..joints]);

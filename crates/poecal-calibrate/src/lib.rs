@@ -33,34 +33,35 @@ pub use crate::run::accuracy::{
     Accuracy, Improvement, Improvements, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy,
 };
 pub use crate::run::blocks::{BlockChoice, names};
+pub use crate::run::calibrated_places::{CalibratedStation, CalibratedTarget};
 pub use crate::run::fit::{fit_screws, free_parameters};
 pub use crate::run::formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use crate::run::noise::{NoiseSource, estimate_noise};
 pub use crate::run::options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use crate::run::pixels::{CornerError, PixelAccuracy, corner_error};
-pub use crate::run::placed::{CalibratedStation, CalibratedTarget};
 pub use crate::run::split::{FEWEST_HELD_OUT, settle_sets, split_rows};
-pub use crate::run::stage::Stage;
-pub use crate::steps::accepted::accepted_by;
+pub use crate::run::stage::CalibrationStage;
 pub use crate::steps::calibrate::{calibrate, calibrate_repairing};
-pub use crate::steps::found::SolverReport;
+pub use crate::steps::fit_progress::SolverReport;
+pub use crate::steps::joint_correlations::CommonDirection;
 pub use crate::steps::level::{Gain, Level, Verdict};
+pub use crate::steps::limit_checks::accepted_by;
 pub use crate::steps::repeatability::{RepeatScatter, RepeatedPose, repeatability};
-pub use crate::steps::result::{Calibration, Repaired};
-pub use crate::steps::together::CommonDirection;
+pub use crate::steps::result::{Calibration, RepairedSession};
 pub use crate::steps::trust::Trust;
 pub use crate::trust::coverage_check::{
-    CoverageCheck, InSampledRange, JudgedError, JudgedRow, PartCoverage, PredictedUncertainty, Promise,
+    CoverageCheck, JudgedError, JudgedRow, PredictedUncertainty, PredictiveDistribution, QuantityCoverage,
+    SampledRangeErrors,
 };
-pub use crate::trust::expected::{Expectations, Expected, RangePart};
-pub use crate::trust::nominal::NominalError;
-pub use crate::validate::arm_too::{ArmToo, arm_too, session_of};
+pub use crate::trust::expected_errors::{Expectations, ExpectedPositionErrors, RangePart};
+pub use crate::trust::nominal_errors::NominalError;
+pub use crate::validate::compare_with_arm_fit::{ArmFitComparison, arm_too, session_of};
 pub use crate::validate::judge::{
-    DeliveredModel, JudgedModel, Judgement, MovedDevice, Refitted, Subject, improvement, judge,
+    DeliveredModel, JudgedCalibration, JudgedModel, Judgement, MovedDevice, RefittedPart, improvement, judge,
 };
 pub use acceptance::{
-    Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Decision,
-    Limit,
+    Acceptance, AcceptanceLimit, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows,
+    AcceptedStatistic, Decision,
 };
 pub use corrections::{
     CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes,
@@ -72,7 +73,7 @@ pub use iso9283::{
     TestRow, iso9283,
 };
 pub use poecal_model::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
-pub use robust::{Loss, Robust, Robustness, RowInfluence, RowJudgement, row_influence};
-pub use workspace::{Displacements, Spread, Workspace, workspace};
+pub use robust::{Loss, RobustLoss, Robustness, RowInfluence, RowJudgement, row_influence};
+pub use workspace::{Displacements, ValueSpread, Workspace, workspace};
 
-pub use poecal_fit::state::{RowError, delivered, radian_m};
+pub use poecal_fit::state::{RowError, nominal_estimate, radian_m};

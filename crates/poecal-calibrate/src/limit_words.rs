@@ -2,11 +2,11 @@
 
 use std::str::FromStr;
 
-use crate::{AcceptanceLimits, AcceptedModel, AcceptedStatistic, Limit};
+use crate::{AcceptanceLimit, AcceptanceLimits, AcceptedModel, AcceptedStatistic};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 
-impl FromStr for Limit {
+impl FromStr for AcceptanceLimit {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
@@ -29,7 +29,7 @@ impl FromStr for Limit {
             return Err(bad(text, "a unit behind the number"));
         }
         let typed = NamedUnit::parse_any(symbol.trim())?;
-        Ok(Limit { statistic, unit: typed.si_unit(), most: typed.to_si(value) })
+        Ok(AcceptanceLimit { statistic, unit: typed.si_unit(), most: typed.to_si(value) })
     }
 }
 
@@ -37,7 +37,7 @@ impl FromStr for AcceptanceLimits {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let limits = text.split(',').map(str::parse).collect::<Result<Vec<Limit>>>()?;
+        let limits = text.split(',').map(str::parse).collect::<Result<Vec<AcceptanceLimit>>>()?;
         AcceptanceLimits::new(limits, AcceptedModel::default())
     }
 }

@@ -13,13 +13,13 @@ mod offsets;
 mod plan;
 mod report;
 mod reproduce;
-mod shared;
+mod shared_args;
 mod simulate;
 mod track;
 mod watch;
 
 pub(crate) use crate::words::{
-    CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, OuterFrame, ProgramLanguage, Refit, word_of,
+    CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, OuterFrame, ProgramLanguage, RefitChoice, word_of,
 };
 pub(crate) use calibrate::Calibrate;
 pub(crate) use compensate::Compensate;
@@ -27,30 +27,30 @@ pub(crate) use compensate::Compensate;
 pub(crate) use detect::Detect;
 #[cfg(any(unix, windows))]
 pub(crate) use fleet::{Fleet, FleetCommand, FleetPrior, FleetReport};
-pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
+pub(crate) use hand_eye::{FramesOutputArgs, HandEyeArgs, TcpArgs};
 pub(crate) use init::Init;
-pub(crate) use iso9283::Iso9283;
-pub(crate) use offsets::Offsets;
-pub(crate) use plan::{FitArgs, Plan, PlannedDevice, exclusive};
+pub(crate) use iso9283::Iso9283Args;
+pub(crate) use offsets::OffsetsArgs;
+pub(crate) use plan::{FitArgs, PlanArgs, PlannedDevice, with_exclusions};
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
-pub(crate) use shared::{TreeArgs, with_mapping};
+pub(crate) use shared_args::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
-pub(crate) use track::Track;
-pub(crate) use watch::Watch;
+pub(crate) use track::TrackArgs;
+pub(crate) use watch::WatchArgs;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Limit as ErrorLimit};
+use poecal_calibrate::{AcceptanceLimit as ErrorLimit, AcceptedModel, DeviceFrameKnowledge, Level};
 use poecal_results::predictions::PredictionFrame;
 use poecal_results::record::Record;
 
-use crate::quantity::{Allowed, limit_of_change, limit_of_files, seconds, threads};
+use crate::quantity::{LimitArgument, limit_of_change, limit_of_files, seconds, threads};
 use crate::words::{FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
-pub(crate) use shared::{ChainArgs, OutFile};
-use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
+pub(crate) use shared_args::{ChainArgs, TextOutput};
+use shared_args::{ColumnArgs, JUDGED, MeaningArgs, RESULTS, ReadingArgs};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -72,7 +72,7 @@ pub(crate) struct Arguments {
     pub(crate) threads: Option<usize>,
     /// What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names)
     #[arg(long, global = true, value_name = "NAME=N", value_parser = limit_of_files)]
-    pub(crate) limit: Vec<Allowed>,
+    pub(crate) limit: Vec<LimitArgument>,
     /// Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once]
     #[arg(long, global = true, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) wait: Option<Duration>,
@@ -86,9 +86,9 @@ pub(crate) enum Command {
     /// Calibrate a robot from measurements
     Calibrate(Box<Calibrate>),
     /// Find where a camera is on the flange, or beside the robot, from poses of the flange and of what the camera saw
-    HandEye(Box<HandEye>),
+    HandEye(Box<HandEyeArgs>),
     /// Find where the tip of a tool is, from poses of the flange in which it touches a fixed point
-    Tcp(Tcp),
+    Tcp(TcpArgs),
     /// Find the corners of a board in pictures; or print a board
     #[cfg(any(unix, windows))]
     Detect(Detect),
@@ -103,7 +103,7 @@ pub(crate) enum Command {
     /// Show by a few measurements whether a robot is as it was calibrated, and which joint is not
     ///
     /// Ends with code 1 if it changed.
-    Track(Box<Track>),
+    Track(Box<TrackArgs>),
     /// Calibrate every robot whose measurements lie in a folder, with a ledger of what was done
     ///
     /// Ends with code 1 if any robot failed.
@@ -112,7 +112,7 @@ pub(crate) enum Command {
     /// Test a robot by ISO 9283: accuracy and repeatability as a data sheet states them, each with its 95 % interval
     ///
     /// Ends with code 1 if a limit of --accept is not shown to be kept.
-    Iso9283(Box<Iso9283>),
+    Iso9283(Box<Iso9283Args>),
     /// Compare two calibrations of one robot: what changed, and what is noise
     ///
     /// Ends with code 1 if the tip moved by more than the limit.
@@ -120,7 +120,7 @@ pub(crate) enum Command {
     /// Predict poses from joint readings
     Predict(Predict),
     /// Show how a model and measurement files are understood
-    Check(Check),
+    Check(CheckArgs),
     /// Write measurements of any form as a table of poecal's, and beside it how they were read
     Import(Import),
     /// Write a robot in the form of a controller, a driver or a simulator, or its numbers into a URDF
@@ -128,15 +128,15 @@ pub(crate) enum Command {
     /// Correct a program for the nominal robot so that the actual one reaches the programmed poses
     Compensate(Compensate),
     /// Explain how a robot differs from its model by joint offsets
-    Offsets(Offsets),
+    Offsets(OffsetsArgs),
     /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors
     Reproduce(Reproduce),
     /// Choose the configurations to measure: which, how many, and the error to expect; or judge a list of them
-    Plan(Box<Plan>),
+    Plan(Box<PlanArgs>),
     /// Judge measurements while they are made: is a row wrong, what to measure next, is it enough
     ///
     /// Ends with code 0 where the error of --target-error is reached, or --batch the rows are as expected; 1 where it is not, or a row is named.
-    Watch(Box<Watch>),
+    Watch(Box<WatchArgs>),
     /// Print the JSON Schema of calibration.json
     Schema,
     /// Print a script with which a shell completes the program's commands, options and words
@@ -170,7 +170,7 @@ pub(crate) struct Compare {
     /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together].
     /// NAME=N is what a file may take, as for all commands
     #[arg(long, value_name = "LENGTH", value_parser = limit_of_change, allow_hyphen_values = true)]
-    limit: Vec<Allowed>,
+    limit: Vec<LimitArgument>,
     /// Print each joint with its test against noise, and the errors of both
     #[arg(long)]
     pub(crate) verbose: bool,
@@ -178,7 +178,7 @@ pub(crate) struct Compare {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }
 
 impl Compare {
@@ -187,7 +187,7 @@ impl Compare {
         self.limit
             .iter()
             .rev()
-            .find_map(|it| if let Allowed::Change(limit_m) = it { Some(*limit_m) } else { None })
+            .find_map(|it| if let LimitArgument::Change(limit_m) = it { Some(*limit_m) } else { None })
     }
 }
 
@@ -200,11 +200,11 @@ pub(crate) struct Validate {
     #[arg(required = true)]
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) meaning: Meaning,
+    pub(crate) meaning: MeaningArgs,
     /// Refit to these measurements: the frame of the measuring device, the targets on the tool, or both; auto refits the device where the rows show that
     /// it stands elsewhere, which is stated otherwise
     #[arg(long, value_parser = one_of(REFIT), value_name = "WHAT", value_delimiter = ',', help_heading = JUDGED)]
-    pub(crate) refit: Vec<Refit>,
+    pub(crate) refit: Vec<RefitChoice>,
     /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
@@ -273,12 +273,12 @@ pub(crate) struct Predict {
     #[arg(long, value_name = "NAME|NAME=LINK")]
     pub(crate) target: Option<String>,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }
 
 /// Arguments of `poecal check`.
 #[derive(Args, Debug)]
-pub(crate) struct Check {
+pub(crate) struct CheckArgs {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
     /// Measurement files (CSV, xlsx, or as instruments and recorders write them) [default: from the settings]
@@ -289,7 +289,7 @@ pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     #[command(flatten)]
-    pub(crate) reading: Reading,
+    pub(crate) reading: ReadingArgs,
     /// The measuring device's frame: `base` looks for mistakes in it too
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
     pub(crate) device_frame: DeviceFrameKnowledge,
@@ -311,7 +311,7 @@ pub(crate) struct Import {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     #[command(flatten)]
-    pub(crate) reading: Reading,
+    pub(crate) reading: ReadingArgs,
     /// The table to write (CSV); how it was made goes to NAME.map.toml beside it
     #[arg(id = "table", long = "out", value_name = "FILE", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
@@ -347,5 +347,5 @@ pub(crate) struct Export {
     #[arg(long, value_name = "FILE")]
     pub(crate) motors: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }

@@ -9,27 +9,27 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anstream::{AutoStream, ColorChoice};
 use poecal_import::MeasurementFile;
 use poecal_numerics::error::Result;
-use poecal_numerics::text::{visible, visible_lines};
-use poecal_results::output::FilePlace;
+use poecal_numerics::text::{escape_invisible, visible_lines};
+use poecal_results::output::ReservedFile;
 
 use crate::progress::Progress;
-use crate::{DONE, Said, WORSE, style};
+use crate::{CapturedOutput, DONE, WORSE, style};
 
 thread_local! {
     /// Captured output, if it is not printed.
-    static KEPT: RefCell<Option<Said>> = const { RefCell::new(None) };
+    static KEPT: RefCell<Option<CapturedOutput>> = const { RefCell::new(None) };
 }
 
 /// Captures output, if that is wanted; false if it is to be printed.
-fn kept(add: impl FnOnce(&mut Said)) -> bool {
+fn capture_if_wanted(add: impl FnOnce(&mut CapturedOutput)) -> bool {
     KEPT.with_borrow_mut(|kept| kept.as_mut().map(add)).is_some()
 }
 
 /// Does some work, and returns its output on standard output and standard error.
-pub(crate) fn captured(work: impl FnOnce() -> u8) -> Said {
-    KEPT.replace(Some(Said::default()));
+pub(crate) fn capture_output(work: impl FnOnce() -> u8) -> CapturedOutput {
+    KEPT.replace(Some(CapturedOutput::default()));
     let code = work();
-    Said { code, ..KEPT.take().unwrap_or_default() }
+    CapturedOutput { code, ..KEPT.take().unwrap_or_default() }
 }
 
 /// Output of clap: help, version, or a usage error.
@@ -38,10 +38,10 @@ pub(crate) fn captured(work: impl FnOnce() -> u8) -> Said {
 /// If the help cannot be printed.
 pub(crate) fn usage(error: &clap::Error) -> Result<()> {
     let text = error.render().to_string();
-    let add = |said: &mut Said| {
+    let add = |said: &mut CapturedOutput| {
         if error.use_stderr() { said.err.push_str(&text) } else { said.out.push_str(&text) }
     };
-    if kept(add) {
+    if capture_if_wanted(add) {
         return Ok(());
     }
     if !error.use_stderr() {
@@ -50,7 +50,7 @@ pub(crate) fn usage(error: &clap::Error) -> Result<()> {
     }
     match width_of(&std::io::stderr()) {
         // Lists of words are longer than a terminal is wide.
-        Some(width) => anstream::eprint!("{}", style::listed(&error.render().ansi().to_string(), width)),
+        Some(width) => anstream::eprint!("{}", style::wrap_list(&error.render().ansi().to_string(), width)),
         None => {
             let _ = error.print();
         }
@@ -80,7 +80,7 @@ impl Console {
 
     /// Bytes on standard output, as [`Console::data`]. If output is kept as text, bytes that are no UTF-8 are made visible.
     pub(crate) fn bytes(&self, bytes: &[u8]) -> Result<()> {
-        if kept(|said| said.out.push_str(&String::from_utf8_lossy(bytes))) {
+        if capture_if_wanted(|said| said.out.push_str(&String::from_utf8_lossy(bytes))) {
             return Ok(());
         }
         let mut out = std::io::stdout().lock();
@@ -95,13 +95,13 @@ impl Console {
     }
 
     /// Data to a file, or to standard output.
-    pub(crate) fn deliver(&self, text: String, place: Option<FilePlace>) -> Result<()> {
+    pub(crate) fn deliver(&self, text: String, place: Option<ReservedFile>) -> Result<()> {
         let Some(place) = place else { return self.data(&text) };
         place.write(vec![text.into()])
     }
 
     /// A result to a file, or to people; `is_data` to standard output for programs.
-    pub(crate) fn show(&self, text: String, place: Option<FilePlace>, is_data: bool) -> Result<()> {
+    pub(crate) fn show(&self, text: String, place: Option<ReservedFile>, is_data: bool) -> Result<()> {
         if is_data || place.is_some() { self.deliver(text, place) } else { self.say(&text) }
     }
 
@@ -114,11 +114,11 @@ impl Console {
         // Line breaks are the report's own; other control characters come from a file.
         let text = visible_lines(text);
         let text = match width_of(&stdout) {
-            Some(width) => style::narrowed(&text, width),
+            Some(width) => style::narrow_report(&text, width),
             None => text.into_owned(),
         };
         let plain = AutoStream::choice(&stdout) == ColorChoice::Never;
-        self.data(&if plain { text } else { style::painted(&text) })
+        self.data(&if plain { text } else { style::paint_report(&text) })
     }
 
     /// A result as JSON, or as a table that `--quiet` suppresses.
@@ -133,15 +133,15 @@ impl Console {
 
     /// A result about written files. If it cannot be printed, the files exist nevertheless: returns the exit code.
     pub(crate) fn say_of(&self, text: &str, written: &Path) -> u8 {
-        self.told(self.say(text), written)
+        self.exit_code(self.say(text), written)
     }
 
     /// [`Console::say_of`] for data.
     pub(crate) fn data_of(&self, text: &str, written: &Path) -> u8 {
-        self.told(self.data(text), written)
+        self.exit_code(self.data(text), written)
     }
 
-    fn told(&self, said: Result<()>, written: &Path) -> u8 {
+    fn exit_code(&self, said: Result<()>, written: &Path) -> u8 {
         let Err(error) = said else { return DONE };
         self.error(format!("{error}; what was to be written is in {}", written.display()));
         WORSE
@@ -153,11 +153,11 @@ impl Console {
     }
 
     pub(crate) fn warning(&self, message: impl Display) {
-        self.aside("warning:", &message.to_string());
+        self.print_aside("warning:", &message.to_string());
     }
 
     /// A warning or a remark, unless `--quiet` suppresses it.
-    fn aside(&self, word: &str, message: &str) {
+    fn print_aside(&self, word: &str, message: &str) {
         if !self.quiet {
             self.said.fetch_add(message.chars().count().div_ceil(HELP_WIDTH), Ordering::Relaxed);
             tell(word, style::WARNING, message);
@@ -181,13 +181,13 @@ impl Console {
 
     /// Sources of a result, on standard error, unless `--quiet` suppresses them.
     pub(crate) fn remark(&self, message: impl Display) {
-        self.aside("note:", &message.to_string());
+        self.print_aside("note:", &message.to_string());
     }
 
     /// A line about the run itself, which was requested and is never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
-        let line = visible(&line.to_string()).into_owned();
-        if kept(|said| said.err.push_str(&format!("{line}\n"))) {
+        let line = escape_invisible(&line.to_string()).into_owned();
+        if capture_if_wanted(|said| said.err.push_str(&format!("{line}\n"))) {
             return;
         }
         let _ = writeln!(std::io::stderr().lock(), "{line}");
@@ -229,13 +229,13 @@ fn width_of<S>(_: &S) -> Option<usize> {
 
 /// A message on standard error: one line, or on a terminal as many as its width requires.
 fn tell(word: &str, style: anstyle::Style, message: &str) {
-    let message = visible(message);
-    if kept(|said| said.err.push_str(&format!("{word} {message}\n"))) {
+    let message = escape_invisible(message);
+    if capture_if_wanted(|said| said.err.push_str(&format!("{word} {message}\n"))) {
         return;
     }
     let stderr = std::io::stderr();
     let message = match width_of(&stderr) {
-        Some(width) => style::wrapped(&message, word.len() + 1, width),
+        Some(width) => style::wrap_message(&message, word.len() + 1, width),
         None => message.into_owned(),
     };
     let mut out = AutoStream::auto(stderr.lock());

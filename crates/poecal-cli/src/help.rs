@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use clap::{Command, CommandFactory as _};
-use poecal_report::table::broken;
+use poecal_report::table::break_text;
 
-use crate::args::{Arguments, exclusive};
+use crate::args::{Arguments, with_exclusions};
 use crate::console::help_width;
 
 /// Columns before the description of a command.
@@ -21,16 +21,16 @@ const GROUPS: [(&str, &[&str]); 4] = [
 
 /// The command line in the program's form.
 pub(crate) fn command_line() -> Command {
-    let command = Arguments::command().mut_subcommand("plan", exclusive);
+    let command = Arguments::command().mut_subcommand("plan", with_exclusions);
     let template = format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}Options:\n{{options}}{{after-help}}",
-        listed(&command)
+        list_commands(&command)
     );
     command.help_template(template)
 }
 
 /// The list of commands: the purpose of each, in groups.
-fn listed(command: &Command) -> String {
+fn list_commands(command: &Command) -> String {
     let width = help_width();
     let mut list = String::new();
     for (heading, names) in GROUPS {
@@ -40,7 +40,7 @@ fn listed(command: &Command) -> String {
                 Some(about) => about.to_string(),
                 None => continue,
             };
-            let _ = writeln!(list, "  {name:<12} {}", broken(&about, NAMES, NAMES, width));
+            let _ = writeln!(list, "  {name:<12} {}", break_text(&about, NAMES, NAMES, width));
         }
         list.push('\n');
     }

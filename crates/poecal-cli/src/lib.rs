@@ -4,7 +4,7 @@
 //! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` demands, do not show
 //! that they keep a limit of `--accept`, or could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
 //!
-//! For people and scripts: options, exit codes and JSON of the program follow semantic versioning, the functions here do not. `lib.rs::understood`
+//! For people and scripts: options, exit codes and JSON of the program follow semantic versioning, the functions here do not. `lib.rs::parse_command_line`
 //! lets clap turn typed words into arguments. If a command has settings, `settings.rs` adds those of `poecal.toml` as further words, and clap reads
 //! all of them again. Not here: computation, and sentences on results, which `poecal-report` has.
 
@@ -14,7 +14,7 @@ mod console;
 mod help;
 mod progress;
 mod quantity;
-mod renamed;
+mod renamed_words;
 mod settings;
 mod signals;
 mod style;
@@ -34,11 +34,11 @@ use console::Console;
 use help::command_line;
 use poecal_fit::problem::stated_level;
 use poecal_numerics::error::{Error, ErrorKind};
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_storage::document;
-use poecal_storage::held;
-use poecal_storage::limits::{self, Limits};
-use quantity::Allowed;
+use poecal_storage::limits::{self, ResourceLimits};
+use poecal_storage::write_locks;
+use quantity::LimitArgument;
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
@@ -50,8 +50,8 @@ const REFUSED: u8 = 2;
 const NO_RESULT: u8 = 3;
 
 /// A command line without control characters, for messages: clap quotes its words unchanged.
-fn shown(typed: &[OsString]) -> Vec<OsString> {
-    typed.iter().map(|word| OsString::from(visible(&word.to_string_lossy()).as_ref())).collect()
+fn printable_words(typed: &[OsString]) -> Vec<OsString> {
+    typed.iter().map(|word| OsString::from(escape_invisible(&word.to_string_lossy()).as_ref())).collect()
 }
 
 /// Prints help and version on standard output, usage errors on standard error: one sentence for a bad value, with clap's hints for others.
@@ -73,7 +73,7 @@ fn usage(error: &clap::Error) -> u8 {
 }
 
 /// The parsed command line with the settings file, or the exit code.
-fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
+fn parse_command_line(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     let refused = |error: &Error| {
         Console::new(false).error(error);
         REFUSED
@@ -83,9 +83,9 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         let arguments = Arguments::from_arg_matches(&matches)?;
         Ok((matches, arguments))
     };
-    let told = |words: &[OsString], error: clap::Error| match parsed(&shown(words)) {
+    let told = |words: &[OsString], error: clap::Error| match parsed(&printable_words(words)) {
         Err(shown) => {
-            match renamed::sentence(words, &shown).or_else(|| without_json::sentence(words, &shown)) {
+            match renamed_words::sentence(words, &shown).or_else(|| without_json::sentence(words, &shown)) {
                 Some(sentence) => refused(&ErrorKind::Option.error(sentence)),
                 None => usage(&shown),
             }
@@ -98,8 +98,9 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         }
     };
     let (matches, arguments) = parsed(&typed).map_err(|error| told(&typed, error))?;
-    let Some(completed) = limits::on(stated_limits(&arguments), || settings::complete(&typed, &matches))
-        .map_err(|error| refused(&error))?
+    let Some(completed) =
+        limits::run_with_limits(stated_limits(&arguments), || settings::complete(&typed, &matches))
+            .map_err(|error| refused(&error))?
     else {
         return Ok((typed, arguments));
     };
@@ -127,7 +128,7 @@ pub fn run_process(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// Captured run of the program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Said {
+pub struct CapturedOutput {
     /// Exit code.
     pub code: u8,
     /// Standard output.
@@ -137,8 +138,8 @@ pub struct Said {
 }
 
 /// Runs the program within another process, and captures its output.
-pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
-    console::captured(|| run_to_code(arguments))
+pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> CapturedOutput {
+    console::capture_output(|| run_to_code(arguments))
 }
 
 /// Refuses commands of pictures and drawings in a program built without them: without an operating system.
@@ -157,7 +158,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Console::new(false).error(&error);
         return REFUSED;
     }
-    let (typed, arguments) = match understood(typed) {
+    let (typed, arguments) = match parse_command_line(typed) {
         Ok(both) => both,
         Err(code) => return code,
     };
@@ -181,8 +182,8 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Fleet(_) => work(),
         _ => document::reading(work),
     };
-    let work = || held::waiting(arguments.wait.unwrap_or_default(), work);
-    match limits::on(stated_limits(&arguments), work) {
+    let work = || write_locks::run_with_patience(arguments.wait.unwrap_or_default(), work);
+    match limits::run_with_limits(stated_limits(&arguments), work) {
         Ok(code) => code,
         Err(error) => {
             // After a signal, errors from removed files mean nothing.
@@ -194,10 +195,10 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 }
 
 /// The limits of this thread with those that were typed.
-fn stated_limits(arguments: &Arguments) -> Limits {
-    arguments.limit.iter().fold(limits::here(), |all, it| match it {
-        Allowed::File(limit, most) => all.with(*limit, *most),
-        Allowed::Change(_) => all,
+fn stated_limits(arguments: &Arguments) -> ResourceLimits {
+    arguments.limit.iter().fold(limits::current_limits(), |all, it| match it {
+        LimitArgument::File(limit, most) => all.with_limit(*limit, *most),
+        LimitArgument::Change(_) => all,
     })
 }
 

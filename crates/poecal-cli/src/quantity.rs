@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-use poecal_compensate::MostChange;
+use poecal_compensate::MaxCorrection;
 use poecal_model::robot::{Corrections, GravityDirection, Sizes, Tolerance};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::threads::MOST_THREADS;
 use poecal_numerics::unit::Unit;
 use poecal_plan::plan::RobotError;
-use poecal_storage::limits::{self, Limit as FileLimit};
+use poecal_storage::limits::{self, ResourceLimit as FileLimit};
 
 /// A number with its unit, in SI: metres for a length, radians for an angle.
 ///
@@ -26,7 +26,7 @@ pub(crate) fn parse(text: &str, quantity: Unit) -> Result<f64> {
 ///
 /// # Errors
 /// As [`parse`].
-pub(crate) fn signed(text: &str, quantity: Unit) -> Result<f64> {
+pub(crate) fn parse_signed(text: &str, quantity: Unit) -> Result<f64> {
     let (value, symbol) = signed_and_symbol(text, example(quantity))?;
     Ok(NamedUnit::parse(symbol, quantity)?.to_si(value))
 }
@@ -158,11 +158,11 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// Parser of the largest joint motion for clap: an omitted value is the default.
-pub(crate) fn most_change(text: &str) -> std::result::Result<MostChange, String> {
+pub(crate) fn most_change(text: &str) -> std::result::Result<MaxCorrection, String> {
     let found: LengthAndAngle = text.parse().map_err(|error: Error| error.to_string())?;
-    let default = MostChange::default();
+    let default = MaxCorrection::default();
     let or = |value: f64, is_stated: bool, default: f64| if is_stated { value } else { default };
-    let most = MostChange {
+    let most = MaxCorrection {
         turning_rad: or(found.angle_rad, found.has_angle, default.turning_rad),
         sliding_m: or(found.length_m, found.has_length, default.sliding_m),
     };
@@ -211,7 +211,7 @@ pub(crate) fn place_m(text: &str) -> std::result::Result<[f64; 3], String> {
 
 /// Parser of a height for clap: a length of either sign.
 pub(crate) fn height_m(text: &str) -> std::result::Result<f64, String> {
-    signed(text, Unit::Metre).map_err(|error| error.to_string())
+    parse_signed(text, Unit::Metre).map_err(|error| error.to_string())
 }
 
 /// Parser of two distances for clap.
@@ -224,7 +224,7 @@ pub(crate) fn distances_m(text: &str) -> std::result::Result<[f64; 2], String> {
 
 /// Workspace of a robot.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Workspace {
+pub(crate) enum WorkspaceChoice {
     /// Anywhere within its limits.
     Limits,
     /// In the configurations of a file.
@@ -233,16 +233,16 @@ pub(crate) enum Workspace {
     Box([[f64; 3]; 2]),
 }
 
-impl FromStr for Workspace {
+impl FromStr for WorkspaceChoice {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         if text == "limits" {
-            return Ok(Workspace::Limits);
+            return Ok(WorkspaceChoice::Limits);
         }
-        box_m(text).map(Workspace::Box).or_else(|message| {
+        box_m(text).map(WorkspaceChoice::Box).or_else(|message| {
             let is_box = text.split(':').all(|corner| corner.split(',').count() == 3);
-            if is_box { Err(message) } else { Ok(Workspace::Tasks(text.into())) }
+            if is_box { Err(message) } else { Ok(WorkspaceChoice::Tasks(text.into())) }
         })
     }
 }
@@ -281,7 +281,7 @@ pub(crate) fn terms(text: &str) -> std::result::Result<Sizes, String> {
 }
 
 /// Parser of a count for clap.
-pub(crate) fn whole<T: FromStr>(text: &str) -> std::result::Result<T, String> {
+pub(crate) fn parse_count<T: FromStr>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|_| format!("found `{text}`, expected a whole number"))
 }
 
@@ -296,7 +296,7 @@ pub(crate) fn seconds(text: &str) -> std::result::Result<Duration, String> {
 
 /// Value of `--limit`: of files for all commands, and of a change for `compare`, which had the word first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Allowed {
+pub(crate) enum LimitArgument {
     /// Limit of a file.
     File(FileLimit, u64),
     /// Largest permitted motion of the tip, metres.
@@ -304,21 +304,21 @@ pub(crate) enum Allowed {
 }
 
 /// Parser of a file limit for clap.
-pub(crate) fn limit_of_files(text: &str) -> Result<Allowed> {
-    limits::parse(text).map(|(limit, most)| Allowed::File(limit, most))
+pub(crate) fn limit_of_files(text: &str) -> Result<LimitArgument> {
+    limits::parse(text).map(|(limit, most)| LimitArgument::File(limit, most))
 }
 
 /// Parser of the tip's largest permitted motion for clap, or of a file limit.
-pub(crate) fn limit_of_change(text: &str) -> std::result::Result<Allowed, String> {
+pub(crate) fn limit_of_change(text: &str) -> std::result::Result<LimitArgument, String> {
     if text.contains('=') {
         return limit_of_files(text).map_err(|error| error.to_string());
     }
-    sigma_m(text).map(Allowed::Change)
+    sigma_m(text).map(LimitArgument::Change)
 }
 
 /// Parser of a number of threads for clap.
 pub(crate) fn threads(text: &str) -> std::result::Result<usize, String> {
-    match whole(text)? {
+    match parse_count(text)? {
         count @ 1..=MOST_THREADS => Ok(count),
         _ => Err(format!("found `{text}`, expected a whole number from 1 to {MOST_THREADS}")),
     }

@@ -8,7 +8,7 @@ use clap::error::ContextKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_results::settings::{Setting, SettingValue, Settings};
+use poecal_results::settings::{SettingLine, SettingValue, Settings};
 use poecal_storage::disk;
 
 use crate::help::command_line;
@@ -41,7 +41,7 @@ const NO_FILES: [(&str, &str); 7] = [
 ];
 
 /// A command line with the settings in it, and their source.
-pub(crate) struct Completed {
+pub(crate) struct CompletedCommand {
     /// The words, as if all had been typed.
     pub(crate) words: Vec<OsString>,
     settings: Settings,
@@ -51,7 +51,7 @@ pub(crate) struct Completed {
 ///
 /// # Errors
 /// As [`Settings::read`], and if no model is named and there are no settings.
-pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Option<Completed>> {
+pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Option<CompletedCommand>> {
     let Some((name, matches)) = matches.subcommand().filter(|(name, _)| READERS.contains(name)) else {
         return Ok(None);
     };
@@ -60,7 +60,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
         return Ok(None);
     }
     let path = named.map_or(Path::new(USUAL), PathBuf::as_path);
-    if named.is_none() && disk::here().follow(path).is_err() {
+    if named.is_none() && disk::current_disk().follow(path).is_err() {
         return Err(ErrorKind::Option.error(format!(
             "found neither a model among the arguments nor this file, expected `poecal {name} MODEL FILES…`, or settings in this folder: \
              `poecal init MODEL` writes them"
@@ -70,17 +70,17 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
     let (Some(command), Some(own)) = (whole.find_subcommand(COMMAND), whole.find_subcommand(name)) else {
         return Ok(None);
     };
-    let keys: Vec<&str> = kept(command).map(|arg| arg.get_id().as_str()).collect();
+    let keys: Vec<&str> = setting_options(command).map(|arg| arg.get_id().as_str()).collect();
     let settings = Settings::read(path, &keys)?;
     let (mut options, mut files) = (Vec::new(), Vec::new());
     if named.is_none() {
         // The command needs the name of its settings file.
         options.push(OsString::from(format!("--settings={USUAL}")));
     }
-    for arg in kept(own) {
+    for arg in setting_options(own) {
         let entries = settings.entries.iter().filter(|entry| arg.get_id() == entry.key.as_str());
         let by_key = arg.get_id() == TABLE;
-        let is_kept = |entry: &&Setting| {
+        let is_kept = |entry: &&SettingLine| {
             if by_key { !is_typed_in_table(entry, matches) } else { !is_replaced(arg, own, matches) }
         };
         for entry in entries.filter(is_kept) {
@@ -92,10 +92,10 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
             }
         }
     }
-    Ok(Some(Completed { words: joined(typed, name, options, files), settings }))
+    Ok(Some(CompletedCommand { words: insert_options(typed, name, options, files), settings }))
 }
 
-impl Completed {
+impl CompletedCommand {
     /// clap's error about a setting, at the setting's place; `None` if it concerns a typed word.
     pub(crate) fn error(&self, error: &clap::Error) -> Option<Error> {
         let option = error.get(ContextKind::InvalidArg)?.to_string();
@@ -103,8 +103,7 @@ impl Completed {
         let text = |kind| error.get(kind).map(ToString::to_string);
         let value = text(ContextKind::InvalidValue);
         let all = || self.settings.entries.iter().filter(|entry| entry.key == key);
-        let is_it =
-            |entry: &&Setting| matches!(&entry.value, SettingValue::One(own) if Some(own) == value.as_ref());
+        let is_it = |entry: &&SettingLine| matches!(&entry.value, SettingValue::One(own) if Some(own) == value.as_ref());
         let entry = all().find(is_it).or_else(|| all().next())?;
         let sentence = match (error.source(), text(ContextKind::InvalidValue), text(ContextKind::ValidValue))
         {
@@ -117,7 +116,7 @@ impl Completed {
 }
 
 /// Options that a settings file may have, from clap, so that there is one list.
-fn kept(command: &Command) -> impl Iterator<Item = &Arg> {
+fn setting_options(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|arg| !NOT_KEPT.contains(&arg.get_id().as_str()))
 }
 
@@ -128,11 +127,11 @@ fn is_replaced(arg: &Arg, command: &Command, matches: &ArgMatches) -> bool {
         |other: &Arg| command.get_arg_conflicts_with(other).iter().any(|it| it.get_id() == arg.get_id());
     let excludes =
         |other: &Arg| command.get_arg_conflicts_with(arg).iter().any(|it| it.get_id() == other.get_id());
-    typed(arg) || kept(command).any(|other| typed(other) && (excluded(other) || excludes(other)))
+    typed(arg) || setting_options(command).any(|other| typed(other) && (excluded(other) || excludes(other)))
 }
 
 /// True if an entry of a table was typed with its key.
-fn is_typed_in_table(entry: &Setting, matches: &ArgMatches) -> bool {
+fn is_typed_in_table(entry: &SettingLine, matches: &ArgMatches) -> bool {
     let SettingValue::One(own) = &entry.value else { return false };
     let key = own.split('=').next();
     let typed = matches.get_many::<(String, String)>(TABLE).into_iter().flatten();
@@ -140,7 +139,7 @@ fn is_typed_in_table(entry: &Setting, matches: &ArgMatches) -> bool {
 }
 
 /// A setting as words of a command line.
-fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsString>> {
+fn values(arg: &Arg, entry: &SettingLine, settings: &Settings) -> Result<Vec<OsString>> {
     let key = entry.key.as_str();
     let is_switch = matches!(arg.get_action(), ArgAction::SetTrue);
     let takes_many = matches!(arg.get_action(), ArgAction::Append)
@@ -193,13 +192,13 @@ fn leads_out(folder: &Path, path: &Path) -> bool {
     if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
         return true;
     }
-    let disk = disk::here();
+    let disk = disk::current_disk();
     let home = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let Ok(home) = disk.actual(home) else { return true };
+    let Ok(home) = disk.canonical_path(home) else { return true };
     let whole = home.join(path);
     // A dangling link cannot be checked.
     let first = whole.ancestors().find(|place| disk.look(place).is_ok());
-    first.is_none_or(|place| disk.actual(place).map_or(true, |actual| !actual.starts_with(&home)))
+    first.is_none_or(|place| disk.canonical_path(place).map_or(true, |actual| !actual.starts_with(&home)))
 }
 
 /// A file name that clap does not take for an option.
@@ -208,7 +207,12 @@ fn not_an_option(name: OsString) -> OsString {
 }
 
 /// Inserts options behind the command, before any `--`, and files at the end.
-fn joined(typed: &[OsString], command: &str, options: Vec<OsString>, files: Vec<OsString>) -> Vec<OsString> {
+fn insert_options(
+    typed: &[OsString],
+    command: &str,
+    options: Vec<OsString>,
+    files: Vec<OsString>,
+) -> Vec<OsString> {
     let at = typed.iter().position(|word| word == command).map_or(typed.len(), |index| index + 1);
     let (before, after) = typed.split_at(at);
     [before.to_vec(), options, after.to_vec(), files].concat()
@@ -228,8 +232,9 @@ mod tests {
             section.lines().filter(|line| line.starts_with("| `")).filter_map(|line| line.split('|').nth(1));
         let documented: BTreeSet<&str> = names.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
         let whole = command_line();
-        let mut expected: BTreeSet<&str> =
-            kept(whole.find_subcommand(COMMAND).unwrap()).map(|arg| arg.get_id().as_str()).collect();
+        let mut expected: BTreeSet<&str> = setting_options(whole.find_subcommand(COMMAND).unwrap())
+            .map(|arg| arg.get_id().as_str())
+            .collect();
         expected.insert("poecal_settings = 1");
         assert_eq!(documented, expected);
         let example = section.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();

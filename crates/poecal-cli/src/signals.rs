@@ -24,7 +24,7 @@ pub(crate) fn clean_up_on_signals() {
     let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
         // Signals ignored from the start, as by `nohup` or a shell's `&`, stay ignored. Only Linux reports them; elsewhere usually only
         // SIGHUP is ignored.
-        let ignored = ignored();
+        let ignored = ignored_signals();
         let all =
             if cfg!(target_os = "linux") { &[SIGINT, SIGTERM, SIGHUP][..] } else { &[SIGINT, SIGTERM][..] };
         let heeded = all.iter().filter(|signal| ignored & (1 << (*signal - 1)) == 0);
@@ -48,7 +48,7 @@ pub(crate) fn clean_up_on_signals() {
 
 /// Signals ignored by this process, a bit each; 0 if the system does not report them.
 #[cfg(unix)]
-fn ignored() -> u64 {
+fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)

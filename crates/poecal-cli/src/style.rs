@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use poecal_calibrate::Level;
-use poecal_numerics::text::visible;
-use poecal_report::table::{INDENT as LABELS, WIDTH, broken, lines};
+use poecal_numerics::text::escape_invisible;
+use poecal_report::table::{INDENT as LABELS, WIDTH, break_text, lines};
 
 /// Style of the word before an error.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -26,24 +26,24 @@ const VERDICTS: [(Level, Style); 5] = [
 ];
 
 /// A path on one line, without control characters.
-pub(crate) fn shown(path: &Path) -> String {
-    visible(&path.display().to_string()).into_owned()
+pub(crate) fn printable_path(path: &Path) -> String {
+    escape_invisible(&path.display().to_string()).into_owned()
 }
 
 /// A labelled paragraph as in reports, in lines of 80 characters unless words are longer.
-pub(crate) fn labelled(label: &str, text: &str) -> String {
+pub(crate) fn label_paragraph(label: &str, text: &str) -> String {
     let mut out = String::new();
     lines(&mut out, label, text.lines());
     out
 }
 
 /// Sentence on the files that were written to a folder.
-pub(crate) fn written(folder: &Path, files: &[String]) -> String {
-    labelled("written", &format!("{}\n{}", shown(folder), files.join(", ")))
+pub(crate) fn describe_written_files(folder: &Path, files: &[String]) -> String {
+    label_paragraph("written", &format!("{}\n{}", printable_path(folder), files.join(", ")))
 }
 
 /// Lines with colours, broken behind commas if they are wider than a terminal.
-pub(crate) fn listed(text: &str, width: usize) -> String {
+pub(crate) fn wrap_list(text: &str, width: usize) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
         if visible_width(line.trim_end()) <= width || !line.contains(", ") {
@@ -80,12 +80,12 @@ fn visible_width(text: &str) -> usize {
 }
 
 /// A message in lines of a width; the first begins after `before` characters, the others are indented by two.
-pub(crate) fn wrapped(message: &str, before: usize, width: usize) -> String {
-    broken(message, before, 2, width)
+pub(crate) fn wrap_message(message: &str, before: usize, width: usize) -> String {
+    break_text(message, before, 2, width)
 }
 
 /// A report with paragraphs for a narrow terminal. Tables are unchanged: broken lines would be unreadable.
-pub(crate) fn narrowed(text: &str, width: usize) -> String {
+pub(crate) fn narrow_report(text: &str, width: usize) -> String {
     if width >= WIDTH || width <= 2 * LABELS {
         return text.to_owned();
     }
@@ -93,7 +93,7 @@ pub(crate) fn narrowed(text: &str, width: usize) -> String {
         let prose = line.get(LABELS..).is_some_and(|text| !text.starts_with(' ') && !text.contains("  "));
         let continued = line.get(..LABELS).is_some_and(|start| start.trim().is_empty());
         if prose && (continued || label(line).is_some()) {
-            broken(line, 0, LABELS, width) + "\n"
+            break_text(line, 0, LABELS, width) + "\n"
         } else {
             format!("{line}\n")
         }
@@ -102,7 +102,7 @@ pub(crate) fn narrowed(text: &str, width: usize) -> String {
 }
 
 /// A report with coloured labels and verdict.
-pub(crate) fn painted(text: &str) -> String {
+pub(crate) fn paint_report(text: &str) -> String {
     text.split_inclusive('\n').map(painted_line).collect()
 }
 
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn labels_and_verdicts_stand_out_and_nothing_is_lost() {
         let report = "robot         elbow\nposition, mm        nominal\n  mean    1\n\nsampled range 71 %\nverdict       do not use: why\n              more\noutliers      1 row\nheld-out error by share\n";
-        let painted = painted(report);
+        let painted = paint_report(report);
         assert_eq!(anstream::adapter::strip_str(&painted).to_string(), report);
         assert!(painted.starts_with("\u{1b}[1mrobot\u{1b}[0m         elbow\n"), "{painted:?}");
         assert!(painted.contains("\u{1b}[1mposition, mm\u{1b}[0m  "), "{painted:?}");
@@ -151,19 +151,19 @@ mod tests {
     #[test]
     fn paragraphs_fit_a_narrow_terminal_and_tables_stay() {
         let report = "noise         0.05 mm each component, from the fit\nposition, mm                  nominal    registered    calibrated\n  mean 1\n";
-        let narrow = narrowed(report, 40);
+        let narrow = narrow_report(report, 40);
         let paragraph = "noise         0.05 mm each component,\n              from the fit\n";
         assert_eq!(
             narrow,
             report.replacen("noise         0.05 mm each component, from the fit\n", paragraph, 1)
         );
-        assert_eq!(narrowed(report, 80), report);
+        assert_eq!(narrow_report(report, 80), report);
     }
 
     #[test]
     fn lines_break_at_blanks_only() {
-        assert_eq!(wrapped("ab cd efghijkl m", 4, 10), "ab cd\n  efghijkl\n  m");
-        let text = labelled("written", &format!("folder\n{}", ["figure.svg"; 9].join(", ")));
+        assert_eq!(wrap_message("ab cd efghijkl m", 4, 10), "ab cd\n  efghijkl\n  m");
+        let text = label_paragraph("written", &format!("folder\n{}", ["figure.svg"; 9].join(", ")));
         assert!(
             text.starts_with("written       folder\n              figure.svg, ")
                 && text.ends_with("figure.svg\n")

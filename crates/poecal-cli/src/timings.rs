@@ -13,37 +13,37 @@ const FEWEST_REPEATS: usize = 5;
 
 /// CPU time of the process (all threads) and wall time.
 #[derive(Clone, Copy, Default)]
-struct Span {
+struct ElapsedTime {
     cpu: Duration,
     wall: Duration,
 }
 
-impl Span {
+impl ElapsedTime {
     fn json(self) -> Value {
         let ms = |duration: Duration| duration.as_secs_f64() * 1e3;
         json!({ "cpu_ms": ms(self.cpu), "wall_ms": ms(self.wall) })
     }
 
-    fn less(self, other: Span) -> Span {
-        Span { cpu: self.cpu.saturating_sub(other.cpu), wall: self.wall.saturating_sub(other.wall) }
+    fn minus(self, other: ElapsedTime) -> ElapsedTime {
+        ElapsedTime { cpu: self.cpu.saturating_sub(other.cpu), wall: self.wall.saturating_sub(other.wall) }
     }
 }
 
 /// A stop watch for both times.
 #[cfg(any(unix, windows))]
-struct Watch {
+struct StopWatch {
     cpu: cpu_time::ProcessTime,
     wall: std::time::Instant,
 }
 
 #[cfg(any(unix, windows))]
-impl Watch {
+impl StopWatch {
     fn start() -> Self {
-        Watch { cpu: cpu_time::ProcessTime::now(), wall: std::time::Instant::now() }
+        StopWatch { cpu: cpu_time::ProcessTime::now(), wall: std::time::Instant::now() }
     }
 
-    fn read(&self) -> Span {
-        Span { cpu: self.cpu.elapsed(), wall: self.wall.elapsed() }
+    fn read(&self) -> ElapsedTime {
+        ElapsedTime { cpu: self.cpu.elapsed(), wall: self.wall.elapsed() }
     }
 }
 
@@ -52,13 +52,13 @@ impl Watch {
 struct Watch;
 
 #[cfg(not(any(unix, windows)))]
-impl Watch {
+impl StopWatch {
     fn start() -> Self {
-        Watch
+        StopWatch
     }
 
-    fn read(&self) -> Span {
-        Span::default()
+    fn read(&self) -> ElapsedTime {
+        ElapsedTime::default()
     }
 }
 
@@ -72,13 +72,13 @@ pub(crate) fn need_clocks() -> Result<()> {
 
 /// Times of consecutive parts.
 pub(crate) struct Timings {
-    watch: Watch,
-    parts: Vec<(&'static str, Span)>,
+    watch: StopWatch,
+    parts: Vec<(&'static str, ElapsedTime)>,
 }
 
 impl Timings {
     pub(crate) fn start() -> Self {
-        Timings { watch: Watch::start(), parts: Vec::new() }
+        Timings { watch: StopWatch::start(), parts: Vec::new() }
     }
 
     /// Ends a part, unless it has ended.
@@ -87,16 +87,16 @@ impl Timings {
             return;
         }
         self.parts.push((part, self.watch.read()));
-        self.watch = Watch::start();
+        self.watch = StopWatch::start();
     }
 
     /// One line of JSON. `solve` is timed alone, as the median of repetitions, and subtracted from `start`, which contained it.
     pub(crate) fn line(&self, solve: impl Fn() -> Summary) -> String {
-        let (solved, repeats, iterations) = repeated(&solve);
+        let (solved, repeats, iterations) = time_repeated(&solve);
         let mut object = serde_json::Map::new();
         for &(part, span) in &self.parts {
             if part == "start" {
-                object.insert(part.to_owned(), span.less(solved).json());
+                object.insert(part.to_owned(), span.minus(solved).json());
                 let mut entry = solved.json();
                 entry["iterations"] = iterations.into();
                 entry["repeats"] = repeats.into();
@@ -110,11 +110,11 @@ impl Timings {
 }
 
 /// Median of repeated solves, their number, and the iterations of each.
-fn repeated(solve: &impl Fn() -> Summary) -> (Span, usize, usize) {
-    let begin = Watch::start();
+fn time_repeated(solve: &impl Fn() -> Summary) -> (ElapsedTime, usize, usize) {
+    let begin = StopWatch::start();
     let (mut cpu, mut wall, mut iterations) = (Vec::new(), Vec::new(), 0);
     while cpu.len() < FEWEST_REPEATS || (begin.read().wall < LONG_ENOUGH && cpu.len() < MOST_REPEATS) {
-        let watch = Watch::start();
+        let watch = StopWatch::start();
         iterations = solve().iterations;
         let span = watch.read();
         cpu.push(span.cpu);
@@ -125,5 +125,5 @@ fn repeated(solve: &impl Fn() -> Summary) -> (Span, usize, usize) {
         times.get(times.len() / 2).copied().unwrap_or_default()
     };
     let repeats = cpu.len();
-    (Span { cpu: median(&mut cpu), wall: median(&mut wall) }, repeats, iterations)
+    (ElapsedTime { cpu: median(&mut cpu), wall: median(&mut wall) }, repeats, iterations)
 }

@@ -1,34 +1,34 @@
 //! Options with a few words as values: the help of each word and its meaning for the library. Command line and Python package read the same tables.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
+use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, RobustLoss};
 use poecal_compensate::Language;
-use poecal_fit::hand_eye::CameraPlace;
-use poecal_import::{Frames, Join, PlaneContact};
-use poecal_lou2009::{Formulation, Method, Residual};
+use poecal_fit::hand_eye::CameraMounting;
+use poecal_import::{FrameGrouping, Join, PlaneContact};
+use poecal_lou2009::{Method, PaperFormulation, PaperResidual};
 use poecal_model::robot::ThirdAxis;
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_plan::plan::PlanCriterion;
 use poecal_results::export::ExportFormat;
 use poecal_results::iso9283::TestFrame;
 use poecal_results::predictions::PredictionFrame;
 
 /// Words, each with its help and its meaning.
-pub type Words<T> = &'static [(&'static str, &'static str, T)];
+pub type WordList<T> = &'static [(&'static str, &'static str, T)];
 
 /// The word of a meaning; empty if it has none.
-pub(crate) fn word_of<T: PartialEq>(words: Words<T>, meaning: &T) -> &'static str {
+pub(crate) fn word_of<T: PartialEq>(words: WordList<T>, meaning: &T) -> &'static str {
     words.iter().find(|(.., it)| it == meaning).map_or("", |(word, ..)| word)
 }
 
 /// Knowledge of the measuring device's frame.
-pub const FRAME: Words<DeviceFrameKnowledge> = &[
+pub const FRAME: WordList<DeviceFrameKnowledge> = &[
     ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),
     ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
 ];
 
 /// The frame in which accuracy of a test is stated.
-pub const TEST_FRAME: Words<TestFrame> = &[
+pub const TEST_FRAME: WordList<TestFrame> = &[
     ("unknown", "It is fitted to the barycentres, which makes AP smaller", TestFrame::Unknown),
     ("base", "Measurements are in the robot's base frame", TestFrame::Base),
     ("calibration", "The device stands where the calibration has it", TestFrame::Calibration),
@@ -36,37 +36,37 @@ pub const TEST_FRAME: Words<TestFrame> = &[
 
 /// Position of the camera of simulated pictures: on the arm or beside it.
 #[cfg(any(unix, windows))]
-pub const CAMERA: Words<CameraPlace> = &[
-    ("in-hand", "On the tip, and the board stays", CameraPlace::InHand),
-    ("beside", "Beside the robot, and the board is on the tip", CameraPlace::Beside),
+pub const CAMERA: WordList<CameraMounting> = &[
+    ("in-hand", "On the tip, and the board stays", CameraMounting::InHand),
+    ("beside", "Beside the robot, and the board is on the tip", CameraMounting::Beside),
 ];
 
 /// Position of the camera of a hand-eye calibration: on the arm or beside it.
-pub const HAND_EYE_CAMERA: Words<CameraPlace> = &[
-    ("in-hand", "On the flange, and the target stays", CameraPlace::InHand),
-    ("beside", "Beside the robot, and the target is on the flange", CameraPlace::Beside),
+pub const HAND_EYE_CAMERA: WordList<CameraMounting> = &[
+    ("in-hand", "On the flange, and the target stays", CameraMounting::InHand),
+    ("beside", "Beside the robot, and the target is on the flange", CameraMounting::Beside),
 ];
 
 /// Inversion of the arm's poses.
-pub const FLANGE_POSES: Words<bool> = &[
+pub const FLANGE_POSES: WordList<bool> = &[
     ("base-from-flange", "The flange in the base, as controllers show it", false),
     ("flange-from-base", "The base in the flange", true),
 ];
 
 /// Inversion of the target's poses.
-pub const TARGET_POSES: Words<bool> = &[
+pub const TARGET_POSES: WordList<bool> = &[
     ("camera-from-target", "The target as the camera sees it, as OpenCV's rvec and tvec", false),
     ("target-from-camera", "The camera in the target's frame", true),
 ];
 
 /// State of the device: unmoved or moved.
-pub const DEVICE: Words<bool> = &[
+pub const DEVICE: WordList<bool> = &[
     ("refit", "It was set up anew: its frame is fitted, and a shift of the first joint does not show", false),
     ("known", "It stands where it stood, as on fixed nests", true),
 ];
 
 /// State of the tool: unchanged or mounted anew.
-pub const TOOL: Words<bool> = &[
+pub const TOOL: WordList<bool> = &[
     ("same", "It stayed on the flange, or was mounted on pins", false),
     (
         "refit",
@@ -76,13 +76,13 @@ pub const TOOL: Words<bool> = &[
 ];
 
 /// Sets of rows that share a device frame.
-pub const FRAMES: Words<Frames> = &[
-    ("common", "All, or those of one name in the column `instrument`", Frames::Common),
-    ("per-file", "Those of a file", Frames::PerFile),
+pub const FRAMES: WordList<FrameGrouping> = &[
+    ("common", "All, or those of one name in the column `instrument`", FrameGrouping::Common),
+    ("per-file", "Those of a file", FrameGrouping::PerFile),
 ];
 
 /// Methods of joining two files.
-pub const JOIN: Words<Join> = &[
+pub const JOIN: WordList<Join> = &[
     ("name", "By the names of their rows (`id`), or the numbers at the end of these", Join::Name),
     (
         "rows",
@@ -98,54 +98,62 @@ pub const JOIN: Words<Join> = &[
 ];
 
 /// Zeros of the counts of third axes.
-pub const THIRD_AXIS: Words<ThirdAxis> = &[
+pub const THIRD_AXIS: WordList<ThirdAxis> = &[
     ("level", "From the level: where J2 turns alone, the forearm keeps its direction", ThirdAxis::Level),
     ("arm", "From the lower arm, as joint 3 of a model", ThirdAxis::Arm),
 ];
 
 /// Methods of touching planes.
-pub const CONTACT: Words<PlaneContact> = &[
+pub const CONTACT: WordList<PlaneContact> = &[
     ("point", "By a point: a height", PlaneContact::Point),
     ("flush", "By a face that lies flush: a height and two tilts", PlaneContact::Flush),
 ];
 
 /// Parameterisations of the joints' errors.
-pub const FORMULATION: Words<Formulation> = &[
-    ("adjoint", "Axes move as rigid bodies, without offsets: minimal, unconstrained", Formulation::Adjoint),
-    ("screw", "Screws are free numbers, normalised after every step", Formulation::Screw),
-    ("screw-offsets", "Free screws and joint offsets, 7n + 6 unknowns", Formulation::ScrewOffsets),
-    ("adjoint-offsets", "Axes as rigid bodies, and joint offsets", Formulation::AdjointOffsets),
+pub const FORMULATION: WordList<PaperFormulation> = &[
+    (
+        "adjoint",
+        "Axes move as rigid bodies, without offsets: minimal, unconstrained",
+        PaperFormulation::Adjoint,
+    ),
+    ("screw", "Screws are free numbers, normalised after every step", PaperFormulation::Screw),
+    ("screw-offsets", "Free screws and joint offsets, 7n + 6 unknowns", PaperFormulation::ScrewOffsets),
+    ("adjoint-offsets", "Axes as rigid bodies, and joint offsets", PaperFormulation::AdjointOffsets),
 ];
 
 /// Residuals of measured frames.
-pub const RESIDUAL: Words<Residual> = &[
-    ("tool", "Position and rotation at the target", Residual::Tool),
-    ("spatial", "The twist about the device's origin", Residual::Spatial),
+pub const RESIDUAL: WordList<PaperResidual> = &[
+    ("tool", "Position and rotation at the target", PaperResidual::Tool),
+    ("spatial", "The twist about the device's origin", PaperResidual::Spatial),
 ];
 
 /// Method of the solver.
-pub const METHOD: Words<Method> = &[
+pub const METHOD: WordList<Method> = &[
     ("levenberg-marquardt", "Damped steps, taken only if they reduce the cost", Method::LevenbergMarquardt),
     ("gauss-newton", "Full steps, taken as they are", Method::GaussNewton),
 ];
 
 /// Treatments of outliers.
-pub const ROBUST: Words<Robust> = &[
-    ("auto", "Least squares, unless outliers are evident: then the tukey loss, and a warning", Robust::Auto),
-    ("off", "Least squares: every row counts in full", Robust::Off),
-    ("huber", "The influence of a residual is bounded", Robust::Loss(Loss::Huber)),
-    ("cauchy", "The influence of a large residual decreases with its size", Robust::Loss(Loss::Cauchy)),
-    ("tukey", "Large residuals have no influence", Robust::Loss(Loss::Tukey)),
+pub const ROBUST: WordList<RobustLoss> = &[
+    (
+        "auto",
+        "Least squares, unless outliers are evident: then the tukey loss, and a warning",
+        RobustLoss::Auto,
+    ),
+    ("off", "Least squares: every row counts in full", RobustLoss::Off),
+    ("huber", "The influence of a residual is bounded", RobustLoss::Loss(Loss::Huber)),
+    ("cauchy", "The influence of a large residual decreases with its size", RobustLoss::Loss(Loss::Cauchy)),
+    ("tukey", "Large residuals have no influence", RobustLoss::Loss(Loss::Tukey)),
 ];
 
 /// Repair of a session: on or off.
-pub const REPAIR: Words<Repairs> = &[
+pub const REPAIR: WordList<Repairs> = &[
     ("auto", "What evidently happened is repaired, if other rows are predicted better then", Repairs::Auto),
     ("off", "It is said only", Repairs::Off),
 ];
 
 /// The verdicts that can be required.
-pub const REQUIRED_LEVEL: Words<Level> = &[
+pub const REQUIRED_LEVEL: WordList<Level> = &[
     ("good", "Good to use anywhere within the limits", Level::Good),
     ("inside_sampled_range", "Good to use inside the sampled range, or better", Level::InsideSampledRange),
     (
@@ -157,13 +165,13 @@ pub const REQUIRED_LEVEL: Words<Level> = &[
 ];
 
 /// The frame of predicted poses.
-pub const PREDICT_IN: Words<PredictionFrame> = &[
+pub const PREDICT_IN: WordList<PredictionFrame> = &[
     ("base", "The robot's base", PredictionFrame::Base),
     ("device", "The measuring device of a calibration", PredictionFrame::Device),
 ];
 
 /// Model of a calibration that predicts, or that shall keep limits.
-pub const MODEL: Words<AcceptedModel> = &[
+pub const MODEL: WordList<AcceptedModel> = &[
     ("corrected", "Screws and terms of the joints", AcceptedModel::Corrected),
     ("calibrated", "Geometry alone, as a URDF holds it", AcceptedModel::Calibrated),
 ];
@@ -178,7 +186,7 @@ pub enum ProgramLanguage {
 }
 
 /// Forms of a program.
-pub const LANGUAGE: Words<ProgramLanguage> = &[
+pub const LANGUAGE: WordList<ProgramLanguage> = &[
     ("csv", "A table of joint readings", ProgramLanguage::Table),
     ("urscript", "URScript of Universal Robots (.script)", ProgramLanguage::Robot(Language::UrScript)),
     ("rapid", "RAPID of ABB (.mod, .prg, .sys)", ProgramLanguage::Robot(Language::Rapid)),
@@ -196,12 +204,12 @@ pub enum ExportForm {
 }
 
 /// A form, by its word.
-const fn open(format: ExportFormat, help: &'static str) -> (&'static str, &'static str, ExportForm) {
+const fn public_form(format: ExportFormat, help: &'static str) -> (&'static str, &'static str, ExportForm) {
     (format.word(), help, ExportForm::Open(format))
 }
 
 /// A form that is not public, with the reason why no file of it can be written.
-const fn closed(word: &'static str, why: &'static str) -> (&'static str, &'static str, ExportForm) {
+const fn private_form(word: &'static str, why: &'static str) -> (&'static str, &'static str, ExportForm) {
     (word, why, ExportForm::Closed(why))
 }
 
@@ -210,7 +218,7 @@ pub(crate) fn export_form() -> impl TypedValueParser<Value = ExportForm> {
     let value = |(word, help, form): &(&'static str, &'static str, ExportForm)| {
         PossibleValue::new(*word).help(*help).hide(matches!(form, ExportForm::Closed(_)))
     };
-    chosen(EXPORT_FORMAT.iter().map(value).collect(), EXPORT_FORMAT.to_vec())
+    parser_of_values(EXPORT_FORMAT.iter().map(value).collect(), EXPORT_FORMAT.to_vec())
 }
 
 /// Help of the form, with those that cannot be written.
@@ -227,46 +235,49 @@ pub(crate) fn export_form_help() -> String {
 pub(crate) const INSTEAD: &str = "use --format offsets for mastering and `poecal compensate` for programs";
 
 /// The forms of exports, also those that cannot be written.
-const EXPORT_FORMAT: Words<ExportForm> = &[
-    open(ExportFormat::Urdf, "The URDF that was calibrated, with other numbers"),
-    open(ExportFormat::Toml, "A table of screws, which poecal reads"),
-    open(ExportFormat::Poe, "Screws of a product of exponentials, JSON"),
-    open(ExportFormat::Dh, "Denavit and Hartenberg's table, JSON"),
-    open(ExportFormat::Mdh, "Craig's table, JSON"),
-    open(
+const EXPORT_FORMAT: WordList<ExportForm> = &[
+    public_form(ExportFormat::Urdf, "The URDF that was calibrated, with other numbers"),
+    public_form(ExportFormat::Toml, "A table of screws, which poecal reads"),
+    public_form(ExportFormat::Poe, "Screws of a product of exponentials, JSON"),
+    public_form(ExportFormat::Dh, "Denavit and Hartenberg's table, JSON"),
+    public_form(ExportFormat::Mdh, "Craig's table, JSON"),
+    public_form(
         ExportFormat::Hayati,
         "Denavit and Hartenberg's, with Hayati's rows where axes are nearly parallel, JSON",
     ),
-    open(ExportFormat::Origins, "Origins of the joints by name, YAML for xacro"),
-    open(ExportFormat::Ur, "Universal Robots' driver, YAML"),
-    open(ExportFormat::Xarm, "uFactory's description, YAML"),
-    open(ExportFormat::Franka, "Franka's description, YAML"),
-    open(ExportFormat::Pal, "PAL Robotics' master calibration, YAML"),
-    open(ExportFormat::Lerobot, "LeRobot's calibration of motors, JSON"),
-    open(ExportFormat::Mjcf, "MuJoCo's model"),
-    open(ExportFormat::Sdf, "Gazebo's model"),
-    open(ExportFormat::Usd, "USD physics, as Isaac Sim reads it"),
-    open(ExportFormat::Csv, "Origins of the joints, a row each"),
-    open(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
-    open(ExportFormat::Tf, "What was located, camera or tool and board or device: ROS 2, URDF, quaternions"),
-    open(ExportFormat::C, "Arrays of C for kinematics on a controller, with what joints do"),
-    closed("kuka", "KUKA's absolute accuracy is a file on the robot's own memory"),
-    closed("fanuc", "FANUC's geometry is closed, and mastering needs counts of encoders"),
-    closed("staubli", "Staeubli's arm.cfx accepts the maker's numbers only"),
-    closed("yaskawa", "Yaskawa shows neither geometry nor its corrections"),
-    closed("abb", "the frames and signs of ABB's MOC.cfg are not published"),
+    public_form(ExportFormat::Origins, "Origins of the joints by name, YAML for xacro"),
+    public_form(ExportFormat::Ur, "Universal Robots' driver, YAML"),
+    public_form(ExportFormat::Xarm, "uFactory's description, YAML"),
+    public_form(ExportFormat::Franka, "Franka's description, YAML"),
+    public_form(ExportFormat::Pal, "PAL Robotics' master calibration, YAML"),
+    public_form(ExportFormat::Lerobot, "LeRobot's calibration of motors, JSON"),
+    public_form(ExportFormat::Mjcf, "MuJoCo's model"),
+    public_form(ExportFormat::Sdf, "Gazebo's model"),
+    public_form(ExportFormat::Usd, "USD physics, as Isaac Sim reads it"),
+    public_form(ExportFormat::Csv, "Origins of the joints, a row each"),
+    public_form(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
+    public_form(
+        ExportFormat::Tf,
+        "What was located, camera or tool and board or device: ROS 2, URDF, quaternions",
+    ),
+    public_form(ExportFormat::C, "Arrays of C for kinematics on a controller, with what joints do"),
+    private_form("kuka", "KUKA's absolute accuracy is a file on the robot's own memory"),
+    private_form("fanuc", "FANUC's geometry is closed, and mastering needs counts of encoders"),
+    private_form("staubli", "Staeubli's arm.cfx accepts the maker's numbers only"),
+    private_form("yaskawa", "Yaskawa shows neither geometry nor its corrections"),
+    private_form("abb", "the frames and signs of ABB's MOC.cfg are not published"),
 ];
 
 /// Values of words that the library knows: the help and the meaning of each.
-fn listed<T: Clone + Send + Sync + 'static>(
+fn parser_of_words<T: Clone + Send + Sync + 'static>(
     words: Vec<(&'static str, &'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
     let values = words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help)).collect();
-    chosen(values, words)
+    parser_of_values(values, words)
 }
 
 /// Parser of words that are offered by these values.
-fn chosen<T: Clone + Send + Sync + 'static>(
+fn parser_of_values<T: Clone + Send + Sync + 'static>(
     values: Vec<PossibleValue>,
     words: Vec<(&'static str, &'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
@@ -277,31 +288,32 @@ fn chosen<T: Clone + Send + Sync + 'static>(
 }
 
 /// Parser of some kinds of measurement, each also by its plural.
-fn kinds(some: Vec<Kind>) -> impl TypedValueParser<Value = Kind> {
-    let value = |kind: &Kind| {
+fn kinds(some: Vec<SessionKind>) -> impl TypedValueParser<Value = SessionKind> {
+    let value = |kind: &SessionKind| {
         let value = PossibleValue::new(kind.word()).help(kind.session().help);
         kind.session().plural.map_or(value.clone(), |plural| value.alias(plural))
     };
     let values: Vec<PossibleValue> = some.iter().map(value).collect();
     PossibleValuesParser::new(values).try_map(move |chosen| {
-        let is_it = |kind: &&Kind| kind.word() == chosen || kind.session().plural == Some(chosen.as_str());
+        let is_it =
+            |kind: &&SessionKind| kind.word() == chosen || kind.session().plural == Some(chosen.as_str());
         some.iter().find(is_it).copied().ok_or("expected one of the words")
     })
 }
 
 /// Parser of a simulated device's kind of measurement.
-pub(crate) fn simulated() -> impl TypedValueParser<Value = Kind> {
-    kinds(Kind::all().into_iter().collect())
+pub(crate) fn parser_of_simulated() -> impl TypedValueParser<Value = SessionKind> {
+    kinds(SessionKind::all().into_iter().collect())
 }
 
 /// Parser of a session's kind of measurement.
-pub(crate) fn measured() -> impl TypedValueParser<Value = Kind> {
-    kinds(Kind::all().into_iter().filter(|kind| kind.session().plural.is_some()).collect())
+pub(crate) fn parser_of_measured() -> impl TypedValueParser<Value = SessionKind> {
+    kinds(SessionKind::all().into_iter().filter(|kind| kind.session().plural.is_some()).collect())
 }
 
 /// The frames and targets that a validation refits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refit {
+pub enum RefitChoice {
     /// The frame of the device.
     Device,
     /// The targets.
@@ -311,10 +323,10 @@ pub enum Refit {
 }
 
 /// The frames and targets that a validation refits.
-pub const REFIT: Words<Refit> = &[
-    ("device", "The frame of the device, which was set up again", Refit::Device),
-    ("tool", "The targets, which were mounted again", Refit::Tool),
-    ("auto", "The frame of the device where it stands elsewhere", Refit::Auto),
+pub const REFIT: WordList<RefitChoice> = &[
+    ("device", "The frame of the device, which was set up again", RefitChoice::Device),
+    ("tool", "The targets, which were mounted again", RefitChoice::Tool),
+    ("auto", "The frame of the device where it stands elsewhere", RefitChoice::Auto),
 ];
 
 /// Frames of a robot beside its joints.
@@ -327,11 +339,11 @@ pub enum OuterFrame {
 }
 
 /// Frames of a robot beside its joints.
-pub const OUTER_FRAME: Words<OuterFrame> =
+pub const OUTER_FRAME: WordList<OuterFrame> =
     &[("base", "The base frame", OuterFrame::Base), ("tip", "The tip frame", OuterFrame::Tip)];
 
 /// Purpose of a planned list.
-pub const CRITERION: Words<PlanCriterion> = &[
+pub const CRITERION: WordList<PlanCriterion> = &[
     (
         "expected",
         "Expected errors of the calibrated and the corrected model over the workspace",
@@ -344,12 +356,14 @@ pub const CRITERION: Words<PlanCriterion> = &[
 ];
 
 /// Avoidance of collisions of the robot with itself.
-pub const SELF_COLLISION: Words<bool> = &[
+pub const SELF_COLLISION: WordList<bool> = &[
     ("avoid", "Configurations in which links overlap are left out", true),
     ("ignore", "Shapes are not looked at", false),
 ];
 
 /// Parser of one of these words for clap.
-pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(words: Words<T>) -> impl TypedValueParser<Value = T> {
-    listed(words.to_vec())
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
+    words: WordList<T>,
+) -> impl TypedValueParser<Value = T> {
+    parser_of_words(words.to_vec())
 }

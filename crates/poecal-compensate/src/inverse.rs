@@ -37,13 +37,18 @@ impl Inverse {
     /// The configuration nearest to `near` (rad, m, in the order of [`Robot::reading_names`]) that has the tip at a pose of the base; on request
     /// within limits. `None` if there is none.
     #[must_use]
-    pub fn nearest(&self, target: &Pose, near: &[f64], within_limits: bool) -> Option<Vec<f64>> {
+    pub fn solve_nearest(&self, target: &Pose, near: &[f64], within_limits: bool) -> Option<Vec<f64>> {
         let mut q: Vec<f64> = self.readings.iter().map(|&at| near.get(at).copied().unwrap_or(0.0)).collect();
         let start = q.clone();
-        self.arm.nearest(target, &mut q);
+        self.arm.solve_nearest(target, &mut q);
         if within_limits && !self.is_within(&q) {
             if let Ok(start) = <&[f64; 7]>::try_from(&start[..]) {
-                q.copy_from_slice(&self.arm.held(self.arm.best()?)?.nearest_within_limits(target, start)?);
+                q.copy_from_slice(
+                    &self
+                        .arm
+                        .branches_with_held(self.arm.best_held_joint()?)?
+                        .nearest_within_limits(target, start)?,
+                );
             } else {
                 let start: [f64; 6] = start[..].try_into().ok()?;
                 q.copy_from_slice(self.arm.branches()?.within_limits(target, &start).as_slice().first()?);
@@ -59,15 +64,16 @@ impl Inverse {
         let Some(branches) = self.arm.branches() else { return Vec::new() };
         let mut start = [0.0; 6];
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
-        let found = if within_limits { branches.within_limits(target, &start) } else { branches.at(target) };
+        let found =
+            if within_limits { branches.within_limits(target, &start) } else { branches.branches_at(target) };
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 
     /// For an arm of seven turning joints, the index (in the order of [`Robot::reading_names`]) of the reading that is best held as redundancy angle:
     /// without its joint the arm is nearest to one with branches in closed form. `None` for other arms.
     #[must_use]
-    pub fn redundant(&self) -> Option<usize> {
-        self.readings.get(self.arm.best()?).copied()
+    pub fn redundant_joint(&self) -> Option<usize> {
+        self.readings.get(self.arm.best_held_joint()?).copied()
     }
 
     /// All configurations of an arm of seven turning joints that have the tip at a pose with one reading held at a value (rad): its index, in the
@@ -81,11 +87,16 @@ impl Inverse {
         within_limits: bool,
     ) -> Vec<Vec<f64>> {
         let joint = self.readings.iter().position(|it| *it == reading);
-        let Some(held) = joint.and_then(|joint| self.arm.held(joint)) else { return Vec::new() };
+        let Some(held) = joint.and_then(|joint| self.arm.branches_with_held(joint)) else {
+            return Vec::new();
+        };
         let mut start = [0.0; 7];
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
-        let found =
-            if within_limits { held.within_limits(target, value, &start) } else { held.at(target, value) };
+        let found = if within_limits {
+            held.within_limits(target, value, &start)
+        } else {
+            held.branches_at(target, value)
+        };
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 
@@ -103,7 +114,7 @@ impl Inverse {
     }
 
     fn is_at(&self, q: &[f64], target: &Pose) -> bool {
-        let (metres, radians) = self.arm.arm().forward_kinematics(q).apart(target);
+        let (metres, radians) = self.arm.arm().forward_kinematics(q).distance_and_angle(target);
         metres <= REACHED && radians <= REACHED
     }
 
@@ -134,7 +145,8 @@ mod tests {
         let inverse = Inverse::new(&robot, &[]).unwrap();
         let configurations = [[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [0.3; 6], [0.4; 6]];
         let targets = configurations.map(|q| robot.forward_kinematics(&q));
-        let found = inverse.of_many(&targets, |inverse, _, target| inverse.nearest(target, &[0.2; 6], true));
+        let found =
+            inverse.of_many(&targets, |inverse, _, target| inverse.solve_nearest(target, &[0.2; 6], true));
         assert_eq!(found.len(), 3);
         for (q, found) in configurations.iter().zip(found) {
             assert!(q.iter().zip(found.unwrap()).all(|(q, found)| (q - found).abs() < 1e-9));

@@ -21,17 +21,17 @@ mod table;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use poecal_arm::{Arm, Correction, Corrections};
+use poecal_arm::{Arm, CorrectionResidual, ReadingCorrections};
 use reach::Reach;
 
 pub use inverse::Inverse;
 pub use kinematics::Kinematics;
-pub use poecal_arm::{MostChange, Outcome};
+pub use poecal_arm::{CorrectionOutcome, MaxCorrection};
 pub use programs::{PoseCompensation, ProgramOptions, ProgramSummary, compensate_file, compensate_program};
-pub use summary::{Checked, CorrectedTarget, Largest, Summary};
+pub use summary::{CompensationSummary, CorrectedTarget, ForwardCheck, LargestValue};
 pub use table::{TableOptions, compensate_table};
 
-pub use poecal_programs::{Given, Language, Listed};
+pub use poecal_programs::{Language, StatedFrames, UnchangedStatement};
 
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -44,7 +44,7 @@ pub const REACHED: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChangeOptions {
     /// Largest motion of a joint beyond its zero.
-    pub most_change: MostChange,
+    pub most_change: MaxCorrection,
     /// True if the nearest configuration is used when an arm of six or more joints cannot reach the intended pose of the tip.
     pub nearest: bool,
 }
@@ -53,7 +53,7 @@ pub struct ChangeOptions {
 /// `base_from_tip(q) = nominal base_from_tip(q₀)`, on the branch of `q₀` (theory.md §2).
 #[derive(Clone, Debug)]
 pub struct Compensation {
-    corrections: Arc<Corrections>,
+    corrections: Arc<ReadingCorrections>,
     nearest: bool,
     /// Index of each reading of the arm among the robot's.
     readings: Vec<usize>,
@@ -73,7 +73,7 @@ pub struct Compensation {
 
 /// A configuration, corrected or unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Compensated<'a> {
+pub struct CompensatedConfiguration<'a> {
     /// Readings to command (rad, m), in the order of [`Robot::reading_names`].
     pub readings: &'a [f64],
     /// Distance of the actual robot's tip from its intended position without correction, metres.
@@ -85,7 +85,7 @@ pub struct Compensated<'a> {
     /// Remaining angle, radians.
     pub left_rad: f64,
     /// Outcome of the correction.
-    pub outcome: Outcome,
+    pub outcome: CorrectionOutcome,
     /// True if it is corrected; otherwise the readings are unchanged, and the remaining error is that without correction.
     pub is_corrected: bool,
 }
@@ -96,14 +96,14 @@ impl Compensation {
     /// # Errors
     /// [`ErrorKind::Model`] if their joints differ, or those of [`Robot::arm`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
-        Compensation::holding(nominal, actual, factors, &[], options)
+        Compensation::with_held_joints(nominal, actual, factors, &[], options)
     }
 
     /// Compensation with some readings held (each by its index among the robot's, with its value in rad or m): the others are corrected for them.
     ///
     /// # Errors
     /// Those of [`Compensation::new`].
-    pub fn holding(
+    pub fn with_held_joints(
         nominal: &Robot,
         actual: &Robot,
         factors: &[f64],
@@ -113,7 +113,7 @@ impl Compensation {
         let (nominal_arm, own) = nominal.arm_holding(&[], held)?;
         let (actual_arm, readings) = actual.arm_holding(factors, held)?;
         let names = actual.joint_reading_names();
-        let corrections = Corrections::new(&nominal_arm, &actual_arm, options.most_change);
+        let corrections = ReadingCorrections::new(&nominal_arm, &actual_arm, options.most_change);
         let Some(corrections) =
             corrections.filter(|_| names == nominal.joint_reading_names() && own == readings)
         else {
@@ -145,19 +145,19 @@ impl Compensation {
 
     /// The nominal arm.
     #[must_use]
-    pub fn nominal(&self) -> &Arm {
-        self.corrections.nominal()
+    pub fn nominal_arm(&self) -> &Arm {
+        self.corrections.nominal_arm()
     }
 
     /// The actual arm.
     #[must_use]
-    pub fn actual(&self) -> &Arm {
-        self.corrections.actual()
+    pub fn actual_arm(&self) -> &Arm {
+        self.corrections.actual_arm()
     }
 
     /// Corrections of the arms.
     #[must_use]
-    pub fn corrections(&self) -> &Corrections {
+    pub fn corrections(&self) -> &ReadingCorrections {
         &self.corrections
     }
 
@@ -174,13 +174,13 @@ impl Compensation {
         self.readings
             .iter()
             .map(of)
-            .zip(self.actual().limits())
+            .zip(self.actual_arm().limits())
             .any(|(it, &(low, high))| it < low || it > high)
     }
 
     /// Readings of the actual robot for readings of the nominal one (rad, m). Readings that do not move the tip are unchanged, and so are all of a
     /// configuration that cannot be corrected. The search starts with the changes before, and every [`TOGETHER`] configurations without.
-    pub fn joints(&mut self, meant: &[f64]) -> Compensated<'_> {
+    pub fn joints(&mut self, meant: &[f64]) -> CompensatedConfiguration<'_> {
         if self.since == TOGETHER {
             self.forget();
         }
@@ -191,12 +191,13 @@ impl Compensation {
         for (to, &at) in self.meant.iter_mut().zip(&self.readings) {
             *to = meant.get(at).copied().unwrap_or(0.0);
         }
-        let target = self.nominal().forward_kinematics(&self.meant);
-        let uncorrected = self.actual().forward_kinematics(&self.meant);
-        let (moved_m, turned_rad) = uncorrected.apart(&target);
+        let target = self.nominal_arm().forward_kinematics(&self.meant);
+        let uncorrected = self.actual_arm().forward_kinematics(&self.meant);
+        let (moved_m, turned_rad) = uncorrected.distance_and_angle(&target);
         if moved_m == 0.0 && turned_rad == 0.0 {
-            let nothing = Correction { outcome: Outcome::Reached, left_m: 0.0, left_rad: 0.0 };
-            return self.told((moved_m, turned_rad), nothing);
+            let nothing =
+                CorrectionResidual { outcome: CorrectionOutcome::Reached, left_m: 0.0, left_rad: 0.0 };
+            return self.compensated((moved_m, turned_rad), nothing);
         }
         // Along a path, changes vary evenly.
         for (to, (last, before)) in self.expected.iter_mut().zip(self.last.iter().zip(&self.before)) {
@@ -204,7 +205,7 @@ impl Compensation {
         }
         let expected = (self.known > 0).then_some(&self.expected[..]);
         let found = self.corrections.correct_to(&target, &self.meant, expected, &mut self.q);
-        if found.outcome == Outcome::Reached {
+        if found.outcome == CorrectionOutcome::Reached {
             std::mem::swap(&mut self.last, &mut self.before);
             for (last, (to, from)) in self.last.iter_mut().zip(self.q.iter().zip(&self.meant)) {
                 *last = to - from;
@@ -220,15 +221,15 @@ impl Compensation {
                 }
             }
         }
-        self.told((moved_m, turned_rad), found)
+        self.compensated((moved_m, turned_rad), found)
     }
 
     /// True if the solution is commanded.
-    fn is_taken(&self, outcome: Outcome) -> bool {
+    fn is_taken(&self, outcome: CorrectionOutcome) -> bool {
         match outcome {
-            Outcome::Reached | Outcome::Turned => true,
-            Outcome::Nearest => self.nearest || self.readings.len() < 6,
-            Outcome::TooFar(..) => false,
+            CorrectionOutcome::Reached | CorrectionOutcome::Turned => true,
+            CorrectionOutcome::Nearest => self.nearest || self.readings.len() < 6,
+            CorrectionOutcome::TooFar(..) => false,
         }
     }
 
@@ -243,12 +244,12 @@ impl Compensation {
 
     /// Reason why a configuration is unchanged, by its outcome and remaining error (m, rad).
     #[must_use]
-    pub fn reason(&self, outcome: Outcome, (left_m, left_rad): (f64, f64)) -> Cow<'static, str> {
+    pub fn reason(&self, outcome: CorrectionOutcome, (left_m, left_rad): (f64, f64)) -> Cow<'static, str> {
         match outcome {
-            Outcome::TooFar(joint, change) => {
+            CorrectionOutcome::TooFar(joint, change) => {
                 let at = self.readings.get(joint).copied().unwrap_or(joint);
-                let slides = self.actual().screws().get(joint).is_some_and(|it| it.is_prismatic());
-                let most = self.corrections.most();
+                let slides = self.actual_arm().screws().get(joint).is_some_and(|it| it.is_prismatic());
+                let most = self.corrections.max_correction();
                 let in_words = |it: f64| if slides { format!("{:.3} mm", it * 1e3) } else { format!("{:.3} deg", it.to_degrees()) };
                 let most = if slides { most.sliding_m } else { most.turning_rad };
                 format!(
@@ -260,13 +261,13 @@ impl Compensation {
                 )
                 .into()
             }
-            Outcome::Nearest => format!(
+            CorrectionOutcome::Nearest => format!(
                 "the actual robot does not reach it: {:.3} mm and {:.4} deg are left at the nearest configuration",
                 left_m * 1e3,
                 left_rad.to_degrees()
             )
             .into(),
-            Outcome::Reached | Outcome::Turned => Cow::Borrowed("it is corrected"),
+            CorrectionOutcome::Reached | CorrectionOutcome::Turned => Cow::Borrowed("it is corrected"),
         }
     }
 
@@ -275,8 +276,8 @@ impl Compensation {
         (self.since, self.known) = (0, 0);
     }
 
-    fn told(&self, moved: (f64, f64), found: Correction) -> Compensated<'_> {
-        Compensated {
+    fn compensated(&self, moved: (f64, f64), found: CorrectionResidual) -> CompensatedConfiguration<'_> {
+        CompensatedConfiguration {
             readings: &self.out,
             moved_m: moved.0,
             turned_rad: moved.1,
@@ -290,7 +291,7 @@ impl Compensation {
     /// Readings of many configurations, one after the other, as by [`Compensation::joints`] of a new compensation one by one, but by all threads.
     /// Also the summary of changes, by the index of each row from 0; on request with every row.
     #[must_use]
-    pub fn of_many(&self, readings: &[f64], each: bool) -> (Vec<f64>, Summary) {
+    pub fn of_many(&self, readings: &[f64], each: bool) -> (Vec<f64>, CompensationSummary) {
         let width = self.names.len().max(1);
         let parts = map_chunks(readings, TOGETHER * width, |_, some| {
             let mut own = self.clone();
@@ -300,11 +301,11 @@ impl Compensation {
             for meant in some.chunks_exact(width) {
                 let it = own.joints(meant);
                 out.extend_from_slice(it.readings);
-                found.push(Compensated { readings: &[], ..it });
+                found.push(CompensatedConfiguration { readings: &[], ..it });
             }
             (out, found)
         });
-        let mut summary = Summary::of_rows(self, each);
+        let mut summary = CompensationSummary::of_rows(self, each);
         let mut out = Vec::with_capacity(readings.len());
         for (some, found) in parts {
             let first = out.len();
@@ -313,7 +314,7 @@ impl Compensation {
                 let at = first / width + row;
                 if found.is_corrected {
                     let commanded = &some[row * width..(row + 1) * width];
-                    summary.include(at, meant, &Compensated { readings: commanded, ..found });
+                    summary.include(at, meant, &CompensatedConfiguration { readings: commanded, ..found });
                 } else {
                     summary.list(at, "row", self.reason(found.outcome, (found.left_m, found.left_rad)));
                 }
@@ -340,7 +341,7 @@ mod tests {
         actual.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.01 });
         let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
         let found = compensation.joints(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]);
-        assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.outcome == Outcome::Reached);
+        assert!((found.readings[1] - 0.19).abs() < 1e-12 && found.outcome == CorrectionOutcome::Reached);
     }
 
     #[test]

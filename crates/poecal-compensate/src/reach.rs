@@ -34,29 +34,32 @@ impl Reach {
     }
 
     /// The branches of an arm of seven with one of its joints held.
-    pub(crate) fn held(&self, joint: usize) -> Option<&HeldBranches> {
+    pub(crate) fn branches_with_held(&self, joint: usize) -> Option<&HeldBranches> {
         self.held.get(joint)?.get_or_init(|| HeldBranches::new(&self.arm, Some(joint))).as_ref()
     }
 
     /// The joint of an arm of seven that is best held.
-    pub(crate) fn best(&self) -> Option<usize> {
+    pub(crate) fn best_held_joint(&self) -> Option<usize> {
         *self.best.get_or_init(|| HeldBranches::new(&self.arm, None).map(|it| it.joint()))
     }
 
-    /// As [`AllBranches::nearest`] and [`HeldBranches::nearest`], or [`Arm::nearest`] for an arm that has neither; returns the remainder.
-    pub(crate) fn nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
+    /// As [`AllBranches::solve_nearest`] and [`HeldBranches::solve_nearest`], or [`Arm::solve_nearest`] for an arm that has neither; returns the remainder.
+    pub(crate) fn solve_nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
         let start: Option<[f64; 6]> = (&*q).try_into().ok();
-        let left = self.arm.nearest(target, q);
+        let left = self.arm.solve_nearest(target, q);
         if left < NOTHING && left * self.arm.reach_m() < NOTHING {
             return left;
         }
         if let (Ok(six), Some(start)) = (<&mut [f64; 6]>::try_from(&mut *q), start) {
             let Some(branches) = self.branches() else { return left };
             *six = start;
-            return branches.nearest(target, six);
+            return branches.solve_nearest(target, six);
         }
-        match (<&mut [f64; 7]>::try_from(q), self.best().and_then(|it| self.held(it))) {
-            (Ok(seven), Some(held)) => held.nearest(target, seven),
+        match (
+            <&mut [f64; 7]>::try_from(q),
+            self.best_held_joint().and_then(|it| self.branches_with_held(it)),
+        ) {
+            (Ok(seven), Some(held)) => held.solve_nearest(target, seven),
             (Err(_), _) | (_, None) => left,
         }
     }

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::{Compensated, Compensation, Outcome};
-use poecal_programs::Listed;
+use super::{CompensatedConfiguration, Compensation, CorrectionOutcome};
+use poecal_programs::UnchangedStatement;
 
 /// Change of a correction from one row to the next (rad, m) from which it is reported as a jump.
 const JUMP: f64 = 0.02;
@@ -14,18 +14,18 @@ const MOST_LINES: usize = 1000;
 
 /// A largest value, and its line of the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Largest {
+pub struct LargestValue {
     /// The value.
     pub value: f64,
     /// Line, from 1; 0 without a value.
     pub line: usize,
 }
 
-impl Largest {
+impl LargestValue {
     /// Adopts a value if it is larger.
     pub fn include(&mut self, value: f64, line: usize) {
         if value > self.value || self.line == 0 {
-            *self = Largest { value, line };
+            *self = LargestValue { value, line };
         }
     }
 }
@@ -47,16 +47,16 @@ pub struct CorrectedTarget {
 
 /// Results recomputed from the written numbers, by the robots' own forward kinematics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Checked {
+pub struct ForwardCheck {
     /// Remaining distance, metres.
-    pub left_m: Largest,
+    pub left_m: LargestValue,
     /// Remaining angle, radians.
-    pub left_rad: Largest,
+    pub left_rad: LargestValue,
     /// Distance of a joint from the value by its reading and its zero, relative to the limit.
-    pub change: Largest,
+    pub change: LargestValue,
 }
 
-impl Checked {
+impl ForwardCheck {
     /// Includes a target's remainder.
     pub fn include(&mut self, (metres, radians): (f64, f64), line: usize) {
         self.left_m.include(metres, line);
@@ -75,36 +75,36 @@ fn count(number: &mut usize, first: &mut usize, line: usize) -> bool {
 
 /// Changes by a compensation, and the remaining error.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Summary {
+pub struct CompensationSummary {
     /// Number of corrected targets.
     pub rows: usize,
     /// Unchanged targets, in the order of the lines.
-    pub listed: Vec<Listed>,
+    pub listed: Vec<UnchangedStatement>,
     /// Every corrected target, on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub targets: Option<Vec<CorrectedTarget>>,
     /// Names of the readings.
     pub joints: Vec<String>,
     /// Largest correction of each reading, rad or m.
-    pub largest: Vec<Largest>,
+    pub largest: Vec<LargestValue>,
     /// Distance of the tip from its intended position without correction, metres.
-    pub moved_m: Largest,
+    pub moved_m: LargestValue,
     /// Angle of the tip from its intended orientation without correction, radians.
-    pub turned_rad: Largest,
+    pub turned_rad: LargestValue,
     /// Remaining distance, metres.
-    pub left_m: Largest,
+    pub left_m: LargestValue,
     /// Remaining angle, radians.
-    pub left_rad: Largest,
+    pub left_rad: LargestValue,
     /// Targets that the actual robot cannot reach, so that the nearest configuration is written, and the first of them.
     pub unreached: (usize, usize),
     /// Targets near singularities that keep some error of their orientation, the first of them, and the largest, radians.
-    pub turned: (usize, usize, Largest),
+    pub turned: (usize, usize, LargestValue),
     /// Readings beyond limits, the first line and its joint.
     pub beyond_limits: (usize, usize, String),
     /// Jumps of a correction between consecutive targets, and the largest.
-    pub jumps: (usize, Largest),
+    pub jumps: (usize, LargestValue),
     /// Result of an independent computation.
-    pub checked: Option<Checked>,
+    pub checked: Option<ForwardCheck>,
     sum_moved: f64,
     /// Name of a position in the program.
     #[serde(skip)]
@@ -117,23 +117,27 @@ pub struct Summary {
     limits: Vec<(usize, f64, f64)>,
 }
 
-impl Summary {
+impl CompensationSummary {
     /// Summary without targets.
     #[must_use]
     pub fn new(compensation: &Compensation) -> Self {
-        let limits = compensation.readings().iter().zip(compensation.actual().limits());
-        Summary {
+        let limits = compensation.readings().iter().zip(compensation.actual_arm().limits());
+        CompensationSummary {
             joints: compensation.names().to_vec(),
-            largest: vec![Largest::default(); compensation.names().len()],
+            largest: vec![LargestValue::default(); compensation.names().len()],
             limits: limits.map(|(&at, &(low, high))| (at, low, high)).collect(),
             place: "line",
-            ..Summary::default()
+            ..CompensationSummary::default()
         }
     }
 
     /// Summary of rows without lines.
     pub(crate) fn of_rows(compensation: &Compensation, each: bool) -> Self {
-        Summary { place: "row", targets: each.then(Vec::new), ..Summary::new(compensation) }
+        CompensationSummary {
+            place: "row",
+            targets: each.then(Vec::new),
+            ..CompensationSummary::new(compensation)
+        }
     }
 
     /// Mean distance of the tip from its intended position without correction, metres.
@@ -143,7 +147,7 @@ impl Summary {
     }
 
     /// Adds a target.
-    pub fn include(&mut self, line: usize, meant: &[f64], found: &Compensated<'_>) {
+    pub fn include(&mut self, line: usize, meant: &[f64], found: &CompensatedConfiguration<'_>) {
         let (mut jump, mut step) = (0.0_f64, 0.0_f64);
         let is_first = self.rows == 0;
         self.last.resize(self.largest.len(), 0.0);
@@ -175,14 +179,14 @@ impl Summary {
             }
         }
         match found.outcome {
-            Outcome::Nearest => {
+            CorrectionOutcome::Nearest => {
                 count(&mut self.unreached.0, &mut self.unreached.1, line);
             }
-            Outcome::Turned => {
+            CorrectionOutcome::Turned => {
                 count(&mut self.turned.0, &mut self.turned.1, line);
                 self.turned.2.include(found.left_rad, line);
             }
-            Outcome::Reached | Outcome::TooFar(..) => {}
+            CorrectionOutcome::Reached | CorrectionOutcome::TooFar(..) => {}
         }
         if let Some(targets) = &mut self.targets {
             targets.push(most);
@@ -197,7 +201,7 @@ impl Summary {
 
     /// Adds a target that stays as it is.
     pub fn list(&mut self, line: usize, name: &str, reason: impl Into<String>) {
-        self.listed.push(Listed { line, name: name.to_owned(), reason: reason.into() });
+        self.listed.push(UnchangedStatement { line, name: name.to_owned(), reason: reason.into() });
     }
 
     /// True if every target is corrected.
@@ -207,7 +211,7 @@ impl Summary {
     }
 
     /// The joint that is changed most, among those that turn or those that slide.
-    fn most(&self, slides: &dyn Fn(&str) -> bool) -> Option<(&str, Largest)> {
+    fn most_changed(&self, slides: &dyn Fn(&str) -> bool) -> Option<(&str, LargestValue)> {
         let all = self.joints.iter().map(String::as_str).zip(self.largest.iter().copied());
         // With both kinds present, those that turn: the ratio of a millimetre to a degree depends on the arm.
         let of = |is_sliding: bool| {
@@ -221,7 +225,7 @@ impl Summary {
     fn changes(&self, out: &mut String, slides: &dyn Fn(&str) -> bool, what: &str) {
         let mm = |it: f64| format!("{:.4} mm", it * 1e3);
         let degrees = |it: f64| format!("{:.4} deg", it.to_degrees());
-        if let Some((name, largest)) = self.most(slides) {
+        if let Some((name, largest)) = self.most_changed(slides) {
             let value = if slides(name) { mm(largest.value) } else { degrees(largest.value) };
             let _ = writeln!(out, "largest change: `{name}` by {value} (line {})", largest.line);
         }
@@ -241,7 +245,7 @@ impl Summary {
             let value = if slides(name) { mm(largest.value) } else { degrees(largest.value) };
             let _ = writeln!(out, "  {name:width$}  {value} (line {})", largest.line);
         }
-        let left = |out: &mut String, words: &str, metres: &Largest, radians: &Largest| {
+        let left = |out: &mut String, words: &str, metres: &LargestValue, radians: &LargestValue| {
             let _ = writeln!(
                 out,
                 "{words}: at most {:.1e} mm (line {}) and {:.1e} deg (line {})",
@@ -294,7 +298,7 @@ impl Summary {
                 out,
                 "  line {}: {}: {}",
                 it.line,
-                poecal_numerics::text::visible(&it.name),
+                poecal_numerics::text::escape_invisible(&it.name),
                 it.reason
             );
         }
@@ -365,7 +369,7 @@ mod tests {
 
     #[test]
     fn the_larger_value_keeps_its_line() {
-        let mut largest = Largest::default();
+        let mut largest = LargestValue::default();
         largest.include(2.0, 7);
         largest.include(1.0, 8);
         assert_eq!((largest.value, largest.line), (2.0, 7));
@@ -376,7 +380,7 @@ mod tests {
         let robot = poecal_testing::sessions::unlimited_elbow();
         let mut compensation =
             Compensation::new(&robot, &robot, &[], &super::super::ChangeOptions::default()).unwrap();
-        let mut summary = Summary::new(&compensation);
+        let mut summary = CompensationSummary::new(&compensation);
         let meant = [0.1; 6];
         summary.include(2, &meant, &compensation.joints(&meant));
         assert_eq!((summary.rows, summary.mean_moved_m()), (1, 0.0));

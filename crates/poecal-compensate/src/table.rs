@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ChangeOptions, Checked, Compensation, Summary};
+use super::{ChangeOptions, Compensation, CompensationSummary, ForwardCheck};
 use poecal_import::{ReadOptions, RewrittenTable, rewrite_joints};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -31,17 +31,17 @@ pub fn compensate_table(
     factors: &[f64],
     options: &TableOptions,
     out: &mut dyn FnMut(&str) -> Result<()>,
-) -> Result<(Summary, RewrittenTable)> {
+) -> Result<(CompensationSummary, RewrittenTable)> {
     let path = path.as_ref();
     let mut compensation = Compensation::new(nominal, actual, factors, &options.change)?;
-    let mut summary = Summary::new(&compensation);
+    let mut summary = CompensationSummary::new(&compensation);
     summary.targets = options.each.then(Vec::new);
     let mut plain = actual.clone();
     // Factors are values of this compensation, not columns of the program.
     plain.factors.clear();
     plain.terms.clear();
     let mut with_factors: Vec<f64> = Vec::new();
-    let mut checked = options.check.then(Checked::default);
+    let mut checked = options.check.then(ForwardCheck::default);
     let mut change = |row: &poecal_import::JointRow<'_>, numbers: &mut [f64]| -> Result<()> {
         let found = compensation.joints(row.readings);
         numbers.copy_from_slice(found.readings);
@@ -57,8 +57,9 @@ pub fn compensate_table(
             with_factors.clear();
             with_factors.extend_from_slice(numbers);
             with_factors.extend_from_slice(factors);
-            let left =
-                actual.forward_kinematics(&with_factors).apart(&nominal.forward_kinematics(row.readings));
+            let left = actual
+                .forward_kinematics(&with_factors)
+                .distance_and_angle(&nominal.forward_kinematics(row.readings));
             checked.include(left, row.line);
             checked.change.include(compensation.share_of_most(row.readings, numbers), row.line);
         }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::print_stdout)]
 
-use poecal_detect::{Detector, Gray, Picture};
+use poecal_detect::{Detector, Gray, GrayPicture};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut pictures = 0;
     println!("picture,name,u[px],v[px],sigma[px]");
     for path in arguments {
-        let picture = Picture::open(path.as_ref())?;
+        let picture = GrayPicture::open(path.as_ref())?;
         pictures += 1;
         if picture.turned.is_turned() {
             println!("# {path}: {}", picture.turned);

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use cpu_time::ThreadTime;
 use nalgebra::Vector2;
-use poecal_detect::render::{Draw, Drawn, Random, clutter, finished};
-use poecal_detect::{Detector, Found, Gray, Layout, Rejected, png};
+use poecal_detect::render::{DrawnScene, RandomGenerator, RandomScenes, clutter, finish_picture};
+use poecal_detect::{BoardLayout, DetectedBoard, Detector, Gray, RejectionReason, png};
 use rayon::prelude::*;
 
 const BOARDS: [(&str, &str); 12] = [
@@ -54,7 +54,7 @@ const OTHERS: [&str; 10] = [
 ];
 
 #[derive(Default)]
-struct Tally {
+struct RenderTally {
     visible: usize,
     found: usize,
     none: usize,
@@ -85,7 +85,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             continue;
         }
         let detector = Detector::new(&spec.parse()?);
-        let drawn: Vec<(usize, Drawn)> = (0..pictures)
+        let drawn: Vec<(usize, DrawnScene)> = (0..pictures)
             .into_par_iter()
             .map(|number| (number, draw(name).scene(detector.layout(), 2026, number)))
             .collect();
@@ -104,16 +104,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// Scenes of a board: a pitch of an asymmetric grid is shorter than the distance between its dots.
-fn draw(name: &str) -> Draw {
+fn draw(name: &str) -> RandomScenes {
     let square_px = match name {
         "circles-asymmetric" => [28.0, 78.0],
-        _ => Draw::default().square_px,
+        _ => RandomScenes::default().square_px,
     };
-    Draw { square_px, ..Draw::default() }
+    RandomScenes { square_px, ..RandomScenes::default() }
 }
 
-fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
-    let mut tally = Tally::default();
+fn tally(detector: &Detector, drawn: &[(usize, DrawnScene)]) -> RenderTally {
+    let mut tally = RenderTally::default();
     for (number, it) in drawn {
         let start = ThreadTime::now();
         let found = detector.detect(&it.picture);
@@ -140,11 +140,11 @@ fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
     tally
 }
 
-impl Tally {
+impl RenderTally {
     /// Adds the corners of a picture; returns the number of detected visible ones.
-    fn add(&mut self, number: usize, found: &Found, drawn: &Drawn) -> usize {
+    fn add(&mut self, number: usize, found: &DetectedBoard, drawn: &DrawnScene) -> usize {
         let last = drawn.truth.len() - 1;
-        let turn = turned(found, drawn);
+        let turn = is_turned(found, drawn);
         let mut seen = 0;
         for corner in &found.corners {
             let truth = &drawn.truth[if turn { last - corner.id } else { corner.id }];
@@ -174,7 +174,7 @@ impl Tally {
 }
 
 /// True if corners count from the other end, for a board that looks the same from both.
-fn turned(found: &Found, drawn: &Drawn) -> bool {
+fn is_turned(found: &DetectedBoard, drawn: &DrawnScene) -> bool {
     let last = drawn.truth.len() - 1;
     let off = |turn: bool| {
         let place = |id: usize| drawn.truth[if turn { last - id } else { id }].place_px;
@@ -183,7 +183,7 @@ fn turned(found: &Found, drawn: &Drawn) -> bool {
     found.turnable && off(true) < off(false)
 }
 
-fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: Tally) -> io::Result<()> {
+fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: RenderTally) -> io::Result<()> {
     let root = |(squares, count): (f64, usize)| (squares / count.max(1) as f64).sqrt();
     tally.errors.sort_by(f64::total_cmp);
     let median = tally.errors.get(tally.errors.len() / 2).copied().unwrap_or(0.0);
@@ -213,26 +213,26 @@ fn false_corners(
         .iter()
         .map(|spec| Ok(Detector::new(&spec.parse()?)))
         .collect::<Result<_, poecal_detect::Error>>()?;
-    let others: Vec<Layout> = OTHERS
+    let others: Vec<BoardLayout> = OTHERS
         .iter()
-        .map(|spec| Ok(Layout::new(&spec.parse()?)))
+        .map(|spec| Ok(BoardLayout::new(&spec.parse()?)))
         .collect::<Result<_, poecal_detect::Error>>()?;
     let picture = |number: usize| -> (Gray, Option<&str>) {
         if number % 5 == 4 {
             let other = number / 5 % others.len();
-            return (Draw::default().scene(&others[other], 7, number).picture, Some(OTHERS[other]));
+            return (RandomScenes::default().scene(&others[other], 7, number).picture, Some(OTHERS[other]));
         }
-        let mut random = Random::new(number as u64);
+        let mut random = RandomGenerator::new(number as u64);
         let background = clutter([1920, 1200], &mut random);
-        let (blur_px, noise) = (random.uniform(0.5, 1.6), random.uniform(1.0, 6.0));
-        (finished(background, blur_px, noise, &mut random), None)
+        let (blur_px, noise) = (random.draw_uniform(0.5, 1.6), random.draw_uniform(1.0, 6.0));
+        (finish_picture(background, blur_px, noise, &mut random), None)
     };
     let found: Vec<(usize, usize, Option<&str>, usize)> = (0..pictures)
         .into_par_iter()
         .flat_map_iter(|number| {
             let (gray, other) = picture(number);
             let all = detectors.iter().enumerate().map(move |(which, detector)| {
-                let found: Result<_, Rejected> = detector.detect(&gray);
+                let found: Result<_, RejectionReason> = detector.detect(&gray);
                 (number, which, other, found.map_or(0, |it| it.corners.len()))
             });
             all.collect::<Vec<_>>()
@@ -250,7 +250,7 @@ fn false_corners(
 }
 
 /// Pictures as PNG, truth as CSV.
-fn keep(folder: &Path, drawn: &[(usize, Drawn)]) -> Result<(), Box<dyn std::error::Error>> {
+fn keep(folder: &Path, drawn: &[(usize, DrawnScene)]) -> Result<(), Box<dyn std::error::Error>> {
     fs::create_dir_all(folder)?;
     let mut truth = fs::File::create(folder.join("truth.csv"))?;
     writeln!(truth, "picture,id,u,v,visible,tilt")?;

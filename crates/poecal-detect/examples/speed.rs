@@ -7,14 +7,14 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use cpu_time::ThreadTime;
-use poecal_detect::{Detector, Gray, Picture};
+use poecal_detect::{Detector, Gray, GrayPicture};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let usage = "expected BOARD ROUNDS PICTURE...";
     let detector = Detector::new(&arguments.next().ok_or(usage)?.parse()?);
     let rounds: usize = arguments.next().ok_or(usage)?.parse()?;
-    let read = |path: String| Ok(Picture::open(path.as_ref())?.gray);
+    let read = |path: String| Ok(GrayPicture::open(path.as_ref())?.gray);
     let pictures: Vec<Gray> = arguments.map(read).collect::<Result<_, poecal_detect::Error>>()?;
     let (mut least_s, mut found, mut corners, mut hasher) = (0.0, 0, 0, DefaultHasher::new());
     for gray in &pictures {

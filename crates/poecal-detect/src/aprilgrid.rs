@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use crate::charuco::consensus;
-use crate::found::{Corner, Found, Kind, Rejected};
+use crate::detection::{DetectedBoard, DetectedCorner, PointKind, RejectionReason};
 use crate::gray::Gray;
-use crate::homography::Pair;
+use crate::homography::PointPair;
 use crate::lattice::{map_near, prune};
-use crate::layout::{Layout, Pattern, Tagged};
-use crate::markers::{Marker, Reader};
+use crate::layout::{BoardLayout, BoardPattern, TagGrid};
+use crate::markers::{DetectedMarker, MarkerReader};
 use crate::median::median;
 use crate::quads::{Quad, quads_apart};
-use crate::saddle::{Expected, Saddle, refine};
+use crate::saddle::{Saddle, SaddlePrior, refine};
 
 /// Fewest tags that form a board.
 const LEAST: usize = 2;
@@ -25,27 +25,39 @@ const OFF: (f64, f64) = (0.8, 0.02);
 const TURNS: usize = 2;
 
 /// Finds the corners of a grid of tags.
-pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) -> Result<Found, Rejected> {
+pub(crate) fn detect(
+    gray: &Gray,
+    layout: &BoardLayout,
+    reader: &MarkerReader,
+    noise: f64,
+) -> Result<DetectedBoard, RejectionReason> {
     of_quads(gray, layout, (reader, noise), &quads_apart(gray, noise))
 }
 
 /// Finds the corners in quadrangles that were separated from the squares at their corners.
 pub(crate) fn of_quads(
     gray: &Gray,
-    layout: &Layout,
-    (reader, noise): (&Reader, f64),
+    layout: &BoardLayout,
+    (reader, noise): (&MarkerReader, f64),
     quads: &[Quad],
-) -> Result<Found, Rejected> {
-    let Pattern::Tags(tags) = &layout.pattern else { return Err(Rejected::NoBoard) };
+) -> Result<DetectedBoard, RejectionReason> {
+    let BoardPattern::Tags(tags) = &layout.pattern else { return Err(RejectionReason::NoBoard) };
     let read = quads.iter().filter_map(|quad| reader.read(gray, quad));
-    let turned = |it: Marker| Marker { corners: [0, 1, 2, 3].map(|k| it.corners[(k + TURNS) % 4]), ..it };
-    let markers: Vec<Marker> = read.map(turned).collect();
-    let (_, agreeing) = consensus(layout, &markers).ok_or(Rejected::NoBoard)?;
+    let turned = |it: DetectedMarker| DetectedMarker {
+        corners: [0, 1, 2, 3].map(|k| it.corners[(k + TURNS) % 4]),
+        ..it
+    };
+    let markers: Vec<DetectedMarker> = read.map(turned).collect();
+    let (_, agreeing) = consensus(layout, &markers).ok_or(RejectionReason::NoBoard)?;
     if agreeing.len() < LEAST || agreeing.len() * 2 < markers.len() {
-        return Err(if markers.len() > 2 { Rejected::Other } else { Rejected::Few(4 * agreeing.len()) });
+        return Err(if markers.len() > 2 {
+            RejectionReason::Other
+        } else {
+            RejectionReason::Few(4 * agreeing.len())
+        });
     }
     let corner = |id: usize, place: Vector2<f64>, weight: f64| (layout.corner(id), place, weight);
-    let anchors: Vec<Pair> = agreeing
+    let anchors: Vec<PointPair> = agreeing
         .iter()
         .filter_map(|at| markers.get(*at))
         .flat_map(|it| [0, 1, 2, 3].map(|k| corner(4 * it.id + k, it.corners[k], ANCHOR)))
@@ -59,7 +71,8 @@ pub(crate) fn of_quads(
             if found.contains_key(&id) {
                 continue;
             }
-            let saddle = expected(gray, layout, tags, &pairs, id).and_then(|it| refine(gray, &it, noise));
+            let saddle =
+                predict_corner(gray, layout, tags, &pairs, id).and_then(|it| refine(gray, &it, noise));
             found.extend(saddle.map(|it| (id, it)));
         }
         prune(layout, &mut found, |it| it.place, OFF);
@@ -68,22 +81,28 @@ pub(crate) fn of_quads(
         }
     }
     if found.len() < 4 {
-        return Err(Rejected::Few(found.len()));
+        return Err(RejectionReason::Few(found.len()));
     }
     let blur_px = median(found.values().map(|it| it.blur_px)).unwrap_or(0.0);
-    let named = |(id, it): (&usize, &Saddle)| Corner {
+    let named = |(id, it): (&usize, &Saddle)| DetectedCorner {
         id: *id,
-        kind: Kind::Tag,
+        kind: PointKind::Tag,
         u_px: it.place.x,
         v_px: it.place.y,
         sigma_px: it.sigma_px,
     };
     let corners = found.iter().map(named).collect();
-    Ok(Found { corners, markers: agreeing.len(), turnable: false, blur_px, noise })
+    Ok(DetectedBoard { corners, markers: agreeing.len(), turnable: false, blur_px, noise })
 }
 
 /// Prediction of a corner by the others.
-fn expected(gray: &Gray, layout: &Layout, tags: &Tagged, pairs: &[Pair], id: usize) -> Option<Expected> {
+fn predict_corner(
+    gray: &Gray,
+    layout: &BoardLayout,
+    tags: &TagGrid,
+    pairs: &[PointPair],
+    id: usize,
+) -> Option<SaddlePrior> {
     let point = layout.corner(id);
     // The corner's own detection from its tag counts too, since the map is taken beside it.
     let (map, nearest) = map_near(pairs, point + Vector2::new(0.01, 0.01))?;
@@ -96,5 +115,5 @@ fn expected(gray: &Gray, layout: &Layout, tags: &Tagged, pairs: &[Pair], id: usi
     // Before the upper left corner is a dark square, before the lower right one the tag.
     let dark_before = id.is_multiple_of(2);
     let search_px = (1.0 + 0.03 * side_px * nearest.max(0.3)).min(0.12 * side_px).max(1.0);
-    Some(Expected { place, slope, plain: border.min(tags.gap), dark_before, search_px })
+    Some(SaddlePrior { place, slope, plain: border.min(tags.gap), dark_before, search_px })
 }

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use crate::homography::{Homography, Pair, near};
+use crate::homography::{Homography, PointPair, weight_pairs_near};
 
 /// Standard deviation of the weights of points by their distance, and the farthest that counts, units of the plane.
 const REACH: [f64; 2] = [1.8, 4.5];
@@ -13,7 +13,7 @@ const REACH: [f64; 2] = [1.8, 4.5];
 const AROUND: usize = 16;
 
 /// Map of the plane near a point: a homography, and a polynomial of second order on top.
-struct Local {
+struct PlaneView {
     map: Homography,
     point: Vector2<f64>,
     bend: SMatrix<f64, 6, 2>,
@@ -23,9 +23,9 @@ fn powers(off: Vector2<f64>) -> SVector<f64, 6> {
     SVector::from([1.0, off.x, off.y, off.x * off.x, off.x * off.y, off.y * off.y])
 }
 
-impl Local {
-    fn new(pairs: &[Pair], point: Vector2<f64>) -> Option<Self> {
-        let near = near(pairs.iter().copied(), point, REACH);
+impl PlaneView {
+    fn new(pairs: &[PointPair], point: Vector2<f64>) -> Option<Self> {
+        let near = weight_pairs_near(pairs.iter().copied(), point, REACH);
         let map = Homography::fit(&near)?;
         let (mut normal, mut right) = (SMatrix::<f64, 6, 6>::zeros(), SMatrix::<f64, 6, 2>::zeros());
         for (plane, place, weight) in &near {
@@ -36,10 +36,10 @@ impl Local {
         // If points do not determine the second order, it is zero.
         normal += SMatrix::identity() * (1e-6 * normal.trace());
         let bend = normal.cholesky()?.solve(&right);
-        Some(Local { map, point, bend })
+        Some(PlaneView { map, point, bend })
     }
 
-    fn at(&self, off: Vector2<f64>) -> Option<Vector2<f64>> {
+    fn map_offset(&self, off: Vector2<f64>) -> Option<Vector2<f64>> {
         Some(self.map.map(self.point + off)? + self.bend.transpose() * powers(off))
     }
 
@@ -49,16 +49,16 @@ impl Local {
 }
 
 /// Offset from the image of a circle's middle to the middle of the ellipse that fits its image, pixels: by points of the plane and their positions.
-pub(crate) fn bias(pairs: &[Pair], middle: Vector2<f64>, radius: f64) -> Option<Vector2<f64>> {
-    let local = Local::new(pairs, middle)?;
-    let (own, slope) = (local.at(Vector2::zeros())?, local.slope()? * radius);
+pub(crate) fn bias(pairs: &[PointPair], middle: Vector2<f64>, radius: f64) -> Option<Vector2<f64>> {
+    let local = PlaneView::new(pairs, middle)?;
+    let (own, slope) = (local.map_offset(Vector2::zeros())?, local.slope()? * radius);
     let back = slope.try_inverse()?;
     let mut shift = Vector2::zeros();
     for k in 0..AROUND {
         let (sin, cos) = (k as f64 * std::f64::consts::TAU / AROUND as f64).sin_cos();
         let outwards = Vector2::new(cos, sin);
         // Deviation of the outline from a circle there, in radii; its first harmonic moves the ellipse.
-        let off = back * (local.at(outwards * radius)? - own) - outwards;
+        let off = back * (local.map_offset(outwards * radius)? - own) - outwards;
         shift += outwards * (outwards.dot(&off) * 2.0 / AROUND as f64);
     }
     let bias = slope * shift;
@@ -86,7 +86,7 @@ mod tests {
         };
         let expected = Vector2::new(ends(0), ends(1)) - map.map(middle).unwrap();
         let plane = (0..8).flat_map(|y| (0..8).map(move |x| Vector2::new(f64::from(x), f64::from(y))));
-        let pairs: Vec<Pair> = plane.map(|it| (it, map.map(it).unwrap(), 1.0)).collect();
+        let pairs: Vec<PointPair> = plane.map(|it| (it, map.map(it).unwrap(), 1.0)).collect();
         let found = bias(&pairs, middle, radius).unwrap();
         println!("{found:?}, by its tangents {expected:?}");
         // Accuracy of second order: the next term is smaller by the square of the circle's depth over its distance.

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use crate::found::{Found, Rejected, found};
+use crate::detection::{DetectedBoard, RejectionReason, board_from_growth};
 use crate::gray::Gray;
-use crate::grid::{Grid, SCALES_PX, grids};
-use crate::growth::{Growth, Node};
-use crate::homography::{Homography, Pair};
-use crate::layout::Layout;
-use crate::markers::{Marker, Reader};
+use crate::grid::{CornerGrid, SCALES_PX, grids};
+use crate::growth::{BoardGrowth, GridCorner};
+use crate::homography::{Homography, PointPair};
+use crate::layout::BoardLayout;
+use crate::markers::{DetectedMarker, MarkerReader};
 use crate::median::median;
 use crate::quads::{Quad, quads};
 
@@ -28,9 +28,14 @@ const ANCHOR: f64 = 0.04;
 const SIDE: f64 = 0.12;
 
 /// Finds a board by its markers; if they are too few, by the grid of its squares.
-pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) -> Result<Found, Rejected> {
+pub(crate) fn detect(
+    gray: &Gray,
+    layout: &BoardLayout,
+    reader: &MarkerReader,
+    noise: f64,
+) -> Result<DetectedBoard, RejectionReason> {
     let first = of_quads(gray, layout, reader, noise, &quads(gray, noise));
-    if first.is_ok() || matches!(first, Err(Rejected::Other)) {
+    if first.is_ok() || matches!(first, Err(RejectionReason::Other)) {
         return first;
     }
     let mut best = first;
@@ -41,7 +46,7 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) 
         if other.is_ok() {
             return other;
         }
-        if matches!(best, Err(Rejected::NoBoard)) {
+        if matches!(best, Err(RejectionReason::NoBoard)) {
             best = other;
         }
     }
@@ -51,20 +56,25 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) 
 /// Finds a board by the markers in quadrangles.
 pub(crate) fn of_quads(
     gray: &Gray,
-    layout: &Layout,
-    reader: &Reader,
+    layout: &BoardLayout,
+    reader: &MarkerReader,
     noise: f64,
     quads: &[Quad],
-) -> Result<Found, Rejected> {
-    let markers: Vec<Marker> = quads.iter().filter_map(|quad| reader.read(gray, quad)).collect();
+) -> Result<DetectedBoard, RejectionReason> {
+    let markers: Vec<DetectedMarker> = quads.iter().filter_map(|quad| reader.read(gray, quad)).collect();
     of_markers(gray, layout, reader, noise, &markers)
 }
 
 /// Markers in the light squares of a grid.
-fn markers_of_grid(gray: &Gray, layout: &Layout, reader: &Reader, grid: &Grid) -> Vec<Marker> {
+fn markers_of_grid(
+    gray: &Gray,
+    layout: &BoardLayout,
+    reader: &MarkerReader,
+    grid: &CornerGrid,
+) -> Vec<DetectedMarker> {
     let side = layout.markers.as_ref().map_or(0.5, |it| it.1);
-    let at = |node: Node| grid.iter().find(|it| it.0 == node).map(|it| it.1);
-    let cell = |node: &Node| -> Option<Marker> {
+    let at = |node: GridCorner| grid.iter().find(|it| it.0 == node).map(|it| it.1);
+    let cell = |node: &GridCorner| -> Option<DetectedMarker> {
         let [x, y] = *node;
         let corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
         let mut places = [Vector2::zeros(); 4];
@@ -84,17 +94,17 @@ fn markers_of_grid(gray: &Gray, layout: &Layout, reader: &Reader, grid: &Grid) -
 
 fn of_markers(
     gray: &Gray,
-    layout: &Layout,
-    reader: &Reader,
+    layout: &BoardLayout,
+    reader: &MarkerReader,
     noise: f64,
-    markers: &[Marker],
-) -> Result<Found, Rejected> {
-    let (map, agreeing) = consensus(layout, markers).ok_or(Rejected::NoBoard)?;
+    markers: &[DetectedMarker],
+) -> Result<DetectedBoard, RejectionReason> {
+    let (map, agreeing) = consensus(layout, markers).ok_or(RejectionReason::NoBoard)?;
     let others = markers.len() - agreeing.len() - strangers_outside(layout, &map, markers, &agreeing);
     if others * DOUBT > agreeing.len() {
-        return Err(Rejected::Other);
+        return Err(RejectionReason::Other);
     }
-    let mut growth = Growth::new(gray, noise, layout.plain(), layout.first_dark);
+    let mut growth = BoardGrowth::new(gray, noise, layout.plain_reach(), layout.first_dark);
     for at in &agreeing {
         let marker = &markers[*at];
         let Some(corners) = layout.marker_corners(marker.id) else { continue };
@@ -110,34 +120,37 @@ fn of_markers(
     growth.grow(&nodes);
     growth.prune();
     if growth.nodes.is_empty() {
-        return Err(Rejected::NoBoard);
+        return Err(RejectionReason::NoBoard);
     }
     if growth.nodes.len() < LEAST_CORNERS {
-        return Err(Rejected::Few(growth.nodes.len()));
+        return Err(RejectionReason::Few(growth.nodes.len()));
     }
-    let Again { right, wrong, unread } = read_again(gray, layout, reader, &growth);
+    let MarkerRecheck { right, wrong, unread } = read_again(gray, layout, reader, &growth);
     if wrong * DOUBT > right || !is_marker_side(layout, &growth, markers, &agreeing) {
-        return Err(Rejected::Other);
+        return Err(RejectionReason::Other);
     }
     // Another board with the same markers agrees in a few. In a blurred one no other marker may be left to contradict, but not all corners of this
     // board are present.
     let markers = right.max(agreeing.len());
     let is_doubtful = growth.nodes.len() < nodes.len() && markers * READ < right + unread;
     if markers < LEAST_MARKERS || is_doubtful {
-        return Err(Rejected::Few(growth.nodes.len()));
+        return Err(RejectionReason::Few(growth.nodes.len()));
     }
-    let [columns, _] = layout.inner();
-    let id = |[x, y]: Node| Some((y - 1) as usize * columns + (x - 1) as usize);
-    Ok(Found { markers, ..found(&growth, noise, id) })
+    let [columns, _] = layout.inner_corners();
+    let id = |[x, y]: GridCorner| Some((y - 1) as usize * columns + (x - 1) as usize);
+    Ok(DetectedBoard { markers, ..board_from_growth(&growth, noise, id) })
 }
 
-fn nodes_of(layout: &Layout) -> Vec<Node> {
+fn nodes_of(layout: &BoardLayout) -> Vec<GridCorner> {
     let [columns, rows] = layout.squares.map(|it| it as i32);
     (1..rows).flat_map(|y| (1..columns).map(move |x| [x, y])).collect()
 }
 
 /// The markers, by their indices in the list, that one map of the board explains, and the map: from a pair of them, or from the only one.
-pub(crate) fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homography, Vec<usize>)> {
+pub(crate) fn consensus(
+    layout: &BoardLayout,
+    markers: &[DetectedMarker],
+) -> Option<(Homography, Vec<usize>)> {
     let known: Vec<(usize, [Vector2<f64>; 4], Quad)> = markers
         .iter()
         .enumerate()
@@ -150,7 +163,7 @@ pub(crate) fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homograp
     let step = (count * count / 800).max(1);
     let pairs = (0..count).flat_map(|a| (a..count).map(move |b| (a, b))).filter(|(a, b)| a != b || count < 3);
     for (a, b) in pairs.step_by(step) {
-        let pairs: Vec<Pair> = [a, b]
+        let pairs: Vec<PointPair> = [a, b]
             .iter()
             .flat_map(|at| known[*at].1.into_iter().zip(known[*at].2).map(|(p, q)| (p, q, 1.0)))
             .collect();
@@ -176,7 +189,12 @@ fn agrees(map: &Homography, corners: &[Vector2<f64>; 4], seen: &Quad, near: Vect
 }
 
 /// Number of disagreeing markers that are far from the board: they do not contradict it.
-fn strangers_outside(layout: &Layout, map: &Homography, markers: &[Marker], agreeing: &[usize]) -> usize {
+fn strangers_outside(
+    layout: &BoardLayout,
+    map: &Homography,
+    markers: &[DetectedMarker],
+    agreeing: &[usize],
+) -> usize {
     let [columns, rows] = layout.squares.map(|it| it as f64);
     let around = [[-1.0, -1.0], [columns + 1.0, -1.0], [columns + 1.0, rows + 1.0], [-1.0, rows + 1.0]];
     let outline: Vec<Vector2<f64>> = around.iter().filter_map(|it| map.map(Vector2::from(*it))).collect();
@@ -192,16 +210,21 @@ fn strangers_outside(layout: &Layout, map: &Homography, markers: &[Marker], agre
 }
 
 /// Counts of the markers at their predicted positions: right ones, wrong ones, and unreadable ones.
-struct Again {
+struct MarkerRecheck {
     right: usize,
     wrong: usize,
     unread: usize,
 }
 
-fn read_again(gray: &Gray, layout: &Layout, reader: &Reader, growth: &Growth<'_>) -> Again {
-    let mut again = Again { right: 0, wrong: 0, unread: 0 };
+fn read_again(
+    gray: &Gray,
+    layout: &BoardLayout,
+    reader: &MarkerReader,
+    growth: &BoardGrowth<'_>,
+) -> MarkerRecheck {
+    let mut again = MarkerRecheck { right: 0, wrong: 0, unread: 0 };
     for id in 0..layout.marker_count() {
-        let Some(quad) = predicted(layout, growth, id) else { continue };
+        let Some(quad) = predict_marker(layout, growth, id) else { continue };
         if !quad.iter().all(|it| gray.holds(*it, 0.0)) {
             continue;
         }
@@ -216,7 +239,7 @@ fn read_again(gray: &Gray, layout: &Layout, reader: &Reader, growth: &Growth<'_>
     again
 }
 
-fn predicted(layout: &Layout, growth: &Growth<'_>, id: usize) -> Option<Quad> {
+fn predict_marker(layout: &BoardLayout, growth: &BoardGrowth<'_>, id: usize) -> Option<Quad> {
     let corners = layout.marker_corners(id)?;
     let middle = (corners[0] + corners[2]) * 0.5;
     let (map, nearest) = growth.map_near(middle)?;
@@ -231,11 +254,16 @@ fn predicted(layout: &Layout, growth: &Growth<'_>, id: usize) -> Option<Quad> {
 }
 
 /// True if the ratio of the markers to the squares is that of the board.
-fn is_marker_side(layout: &Layout, growth: &Growth<'_>, markers: &[Marker], agreeing: &[usize]) -> bool {
+fn is_marker_side(
+    layout: &BoardLayout,
+    growth: &BoardGrowth<'_>,
+    markers: &[DetectedMarker],
+    agreeing: &[usize],
+) -> bool {
     let diagonals = |quad: &Quad| (quad[2] - quad[0]).norm() + (quad[3] - quad[1]).norm();
     let parts = agreeing.iter().filter_map(|at| {
         let marker = markers.get(*at)?;
-        Some(diagonals(&marker.corners) / diagonals(&predicted(layout, growth, marker.id)?))
+        Some(diagonals(&marker.corners) / diagonals(&predict_marker(layout, growth, marker.id)?))
     });
     median(parts).is_none_or(|it| (it - 1.0).abs() < SIDE)
 }

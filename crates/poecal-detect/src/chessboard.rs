@@ -1,10 +1,10 @@
 //! Plain chessboards: a grid of the right size, with both ends of both sides seen.
 
-use crate::found::{Found, Rejected, found};
+use crate::detection::{DetectedBoard, RejectionReason, board_from_growth};
 use crate::gray::Gray;
-use crate::grid::{Grid, SCALES_PX, grids, middle_slope};
-use crate::growth::{Growth, Node, place_of};
-use crate::layout::Layout;
+use crate::grid::{CornerGrid, SCALES_PX, grids, middle_slope};
+use crate::growth::{BoardGrowth, GridCorner, place_of};
+use crate::layout::BoardLayout;
 
 /// Fewest corners from which a grid starts.
 const LEAST: usize = 6;
@@ -12,17 +12,21 @@ const LEAST: usize = 6;
 const GRIDS: usize = 6;
 
 /// Finds a chessboard whose corners reach over all its columns and rows.
-pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
+pub(crate) fn detect(
+    gray: &Gray,
+    layout: &BoardLayout,
+    noise: f64,
+) -> Result<DetectedBoard, RejectionReason> {
     let mut most = 0;
-    let mut reason = Rejected::NoBoard;
+    let mut reason = RejectionReason::NoBoard;
     let of_scale = |blur_px: &f64| grids(gray, noise, *blur_px).into_iter();
     for grid in SCALES_PX.iter().flat_map(|it| of_scale(it).filter(|it| it.len() >= LEAST).take(GRIDS)) {
         if is_larger(layout, grid.iter().map(|it| it.0), 1) {
-            reason = Rejected::Other;
+            reason = RejectionReason::Other;
             continue;
         }
-        let Some(growth) = grown(gray, layout, noise, &grid) else { continue };
-        match named(gray, layout, noise, &growth) {
+        let Some(growth) = grow_from_grid(gray, layout, noise, &grid) else { continue };
+        match name_corners(gray, layout, noise, &growth) {
             Ok(board) => return Ok(board),
             Err(other) if growth.nodes.len() > most => {
                 most = growth.nodes.len();
@@ -35,9 +39,14 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, 
 }
 
 /// All corners around a grid, up to one more than the board has on each side.
-fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option<Growth<'a>> {
+fn grow_from_grid<'a>(
+    gray: &'a Gray,
+    layout: &BoardLayout,
+    noise: f64,
+    grid: &CornerGrid,
+) -> Option<BoardGrowth<'a>> {
     let seeded = |first_dark: bool| {
-        let mut growth = Growth::new(gray, noise, layout.plain(), first_dark);
+        let mut growth = BoardGrowth::new(gray, noise, layout.plain_reach(), first_dark);
         for (node, place) in grid {
             let Some(slope) = slope_at(grid, *node) else { continue };
             growth.seed(*node, *place, slope);
@@ -50,13 +59,13 @@ fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option
         return None;
     }
     growth.prune();
-    let longest = layout.inner().into_iter().max()? as i32;
+    let longest = layout.inner_corners().into_iter().max()? as i32;
     let [low, high] = extent(growth.nodes.keys().copied())?;
     let span = |k: usize| {
         let more = (longest - (high[k] - low[k])).max(1);
         low[k] - more..=high[k] + more
     };
-    let candidates: Vec<Node> = span(1).flat_map(|y| span(0).map(move |x| [x, y])).collect();
+    let candidates: Vec<GridCorner> = span(1).flat_map(|y| span(0).map(move |x| [x, y])).collect();
     growth.grow(&candidates);
     growth.prune();
     peel(layout, &mut growth);
@@ -64,7 +73,7 @@ fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option
 }
 
 /// Removes single corners beyond the board if it has full lines within: background may look like a corner.
-fn peel(layout: &Layout, growth: &mut Growth<'_>) {
+fn peel(layout: &BoardLayout, growth: &mut BoardGrowth<'_>) {
     while is_larger(layout, growth.nodes.keys().copied(), 0) {
         let Some([low, high]) = extent(growth.nodes.keys().copied()) else { return };
         let lines = [(0, low[0]), (0, high[0]), (1, low[1]), (1, high[1])];
@@ -79,8 +88,8 @@ fn peel(layout: &Layout, growth: &mut Growth<'_>) {
 }
 
 /// The slope at a corner of a grid, from its neighbours, or that of the whole grid.
-fn slope_at(grid: &Grid, node: Node) -> Option<nalgebra::Matrix2<f64>> {
-    let near: Grid = grid
+fn slope_at(grid: &CornerGrid, node: GridCorner) -> Option<nalgebra::Matrix2<f64>> {
+    let near: CornerGrid = grid
         .iter()
         .filter(|(other, _)| (other[0] - node[0]).abs() <= 1 && (other[1] - node[1]).abs() <= 1)
         .copied()
@@ -89,7 +98,7 @@ fn slope_at(grid: &Grid, node: Node) -> Option<nalgebra::Matrix2<f64>> {
 }
 
 /// First and last columns and rows with corners.
-fn extent(nodes: impl Iterator<Item = Node>) -> Option<[Node; 2]> {
+fn extent(nodes: impl Iterator<Item = GridCorner>) -> Option<[GridCorner; 2]> {
     nodes.fold(None, |found, node| {
         let [low, high] = found.unwrap_or([node, node]);
         Some([[0, 1].map(|k| low[k].min(node[k])), [0, 1].map(|k| high[k].max(node[k]))])
@@ -97,8 +106,8 @@ fn extent(nodes: impl Iterator<Item = Node>) -> Option<[Node; 2]> {
 }
 
 /// True if corners reach farther than those of the board, and some more.
-fn is_larger(layout: &Layout, nodes: impl Iterator<Item = Node>, more: usize) -> bool {
-    let [columns, rows] = layout.inner();
+fn is_larger(layout: &BoardLayout, nodes: impl Iterator<Item = GridCorner>, more: usize) -> bool {
+    let [columns, rows] = layout.inner_corners();
     extent(nodes).is_some_and(|[low, high]| {
         let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
         size[0].min(size[1]) > columns.min(rows) + more || size[0].max(size[1]) > columns.max(rows) + more
@@ -106,34 +115,39 @@ fn is_larger(layout: &Layout, nodes: impl Iterator<Item = Node>, more: usize) ->
 }
 
 /// The board with its names, if the corners reach over all of it.
-fn named(gray: &Gray, layout: &Layout, noise: f64, growth: &Growth<'_>) -> Result<Found, Rejected> {
-    let [low, high] = extent(growth.nodes.keys().copied()).ok_or(Rejected::NoBoard)?;
+fn name_corners(
+    gray: &Gray,
+    layout: &BoardLayout,
+    noise: f64,
+    growth: &BoardGrowth<'_>,
+) -> Result<DetectedBoard, RejectionReason> {
+    let [low, high] = extent(growth.nodes.keys().copied()).ok_or(RejectionReason::NoBoard)?;
     let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
-    let [columns, rows] = layout.inner();
+    let [columns, rows] = layout.inner_corners();
     let count = growth.nodes.len();
     if is_larger(layout, growth.nodes.keys().copied(), 0) {
-        return Err(Rejected::Other);
+        return Err(RejectionReason::Other);
     }
     if size != [columns, rows] && size != [rows, columns] || count * 2 < layout.corners() {
-        return Err(Rejected::Few(count));
+        return Err(RejectionReason::Few(count));
     }
     if !is_plain(gray, growth) {
-        return Err(Rejected::Other);
+        return Err(RejectionReason::Other);
     }
     if !has_rim(gray, growth, low, high) {
-        return Err(Rejected::Few(count));
+        return Err(RejectionReason::Few(count));
     }
     let turns = turns(layout, growth, low, high);
-    let Some(turn) = turns.first() else { return Err(Rejected::Other) };
-    let id = |node: Node| {
-        let [x, y] = turned(node, low, high, *turn);
+    let Some(turn) = turns.first() else { return Err(RejectionReason::Other) };
+    let id = |node: GridCorner| {
+        let [x, y] = turn_node(node, low, high, *turn);
         Some(y * columns + x)
     };
-    Ok(Found { turnable: turns.len() > 1, ..found(growth, noise, id) })
+    Ok(DetectedBoard { turnable: turns.len() > 1, ..board_from_growth(growth, noise, id) })
 }
 
 /// Columns and rows from the first corner, of a board turned by this number of right angles.
-fn turned(node: Node, low: Node, high: Node, turn: usize) -> [usize; 2] {
+fn turn_node(node: GridCorner, low: GridCorner, high: GridCorner, turn: usize) -> [usize; 2] {
     let [left, up] = [node[0] - low[0], node[1] - low[1]];
     let [right, down] = [high[0] - node[0], high[1] - node[1]];
     let place = match turn {
@@ -146,17 +160,17 @@ fn turned(node: Node, low: Node, high: Node, turn: usize) -> [usize; 2] {
 }
 
 /// Turns that map the grid onto the board with matching dark and light squares, the one with the first corner highest in the picture first.
-fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usize> {
-    let inner = layout.inner();
+fn turns(layout: &BoardLayout, growth: &BoardGrowth<'_>, low: GridCorner, high: GridCorner) -> Vec<usize> {
+    let inner = layout.inner_corners();
     let fits = |turn: &usize| {
-        let far = turned([high[0], high[1]], low, high, *turn);
-        let near = turned([low[0], low[1]], low, high, *turn);
+        let far = turn_node([high[0], high[1]], low, high, *turn);
+        let near = turn_node([low[0], low[1]], low, high, *turn);
         let size = [0, 1].map(|k| far[k].max(near[k]) + 1);
         if size != inner {
             return false;
         }
         let Some(node) = growth.nodes.keys().next() else { return false };
-        let [x, y] = turned(*node, low, high, *turn);
+        let [x, y] = turn_node(*node, low, high, *turn);
         // A quarter turn places another square before the corner: dark and light change.
         let dark = growth.dark_before(*node) != (*turn % 2 == 1);
         dark == layout.is_dark(x, y)
@@ -168,7 +182,7 @@ fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usi
     }
     let height = |turn: &usize| {
         let first = [[low[0], low[1]], [low[0], high[1]], [high[0], high[1]], [high[0], low[1]]];
-        let corner = first.iter().find(|node| turned(**node, low, high, *turn) == [0, 0]);
+        let corner = first.iter().find(|node| turn_node(**node, low, high, *turn) == [0, 0]);
         let map = corner.and_then(|node| growth.map_near(place_of(*node)).map(|it| (it.0, place_of(*node))));
         map.and_then(|(map, at)| map.map(at)).map_or(f64::INFINITY, |it| it.x + it.y)
     };
@@ -176,7 +190,7 @@ fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usi
     found
 }
 
-fn inner_size(low: Node, high: Node, turn: usize) -> [usize; 2] {
+fn inner_size(low: GridCorner, high: GridCorner, turn: usize) -> [usize; 2] {
     let size = [0, 1].map(|k| (high[k] - low[k] + 1) as usize);
     if turn.is_multiple_of(2) { size } else { [size[1], size[0]] }
 }
@@ -185,13 +199,13 @@ fn inner_size(low: Node, high: Node, turn: usize) -> [usize; 2] {
 const UNEVEN: f64 = 0.45;
 
 /// True if the light squares are plain, unlike those of a board with markers.
-fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
+fn is_plain(gray: &Gray, growth: &BoardGrowth<'_>) -> bool {
     let mut kinds = [0, 0];
     for (node, saddle) in &growth.nodes {
         let opposite = growth.nodes.get(&[node[0] + 1, node[1] + 1]);
         // The square after a corner has the shade of the one before it.
         let (Some(opposite), false) = (opposite, growth.dark_before(*node)) else { continue };
-        let at = |part: f64| gray.at(saddle.place + (opposite.place - saddle.place) * part);
+        let at = |part: f64| gray.level_at(saddle.place + (opposite.place - saddle.place) * part);
         let levels = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75].map(at);
         let mean = levels.iter().sum::<f64>() / levels.len() as f64;
         let variance = levels.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / levels.len() as f64;
@@ -203,7 +217,7 @@ fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
 
 /// True if the outermost squares of all four sides are visible, as wide as the others, dark and light in turn. A field of tiles is cut off anywhere,
 /// and a larger board may continue outside the picture.
-fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
+fn has_rim(gray: &Gray, growth: &BoardGrowth<'_>, low: GridCorner, high: GridCorner) -> bool {
     let sides = [(0, low[0], -1.0), (0, high[0], 1.0), (1, low[1], -1.0), (1, high[1], 1.0)];
     sides.into_iter().all(|(k, line, way)| {
         let mut kinds = [0, 0];
@@ -217,7 +231,7 @@ fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
 }
 
 /// True if the squares beyond an outermost corner continue to [`RIM`]; `None` outside the picture.
-fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> Option<bool> {
+fn is_rim(gray: &Gray, growth: &BoardGrowth<'_>, node: GridCorner, k: usize, way: f64) -> Option<bool> {
     let (map, _) = growth.map_near(place_of(node))?;
     // In the square before the corner and in the one after it, along the side.
     let level = |beside: f64| {
@@ -227,7 +241,7 @@ fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> O
             let mut off = nalgebra::Vector2::new(beside + aside, beside + aside);
             off[k] = way * out;
             let place = map.map(place_of(node) + off).filter(|it| gray.holds(*it, 1.0))?;
-            sum += gray.at(place) / 5.0;
+            sum += gray.level_at(place) / 5.0;
         }
         Some(sum)
     };
@@ -251,9 +265,9 @@ mod tests {
         // x to the right and y down are preserved: the corner after the first along x, and the one along y, are a right turn apart.
         let (low, high) = ([2, 3], [5, 4]);
         for turn in 0..4 {
-            let all: Vec<(Node, [usize; 2])> = (3..=4)
+            let all: Vec<(GridCorner, [usize; 2])> = (3..=4)
                 .flat_map(|y| (2..=5).map(move |x| [x, y]))
-                .map(|node| (node, turned(node, low, high, turn)))
+                .map(|node| (node, turn_node(node, low, high, turn)))
                 .collect();
             let at = |place: [usize; 2]| {
                 let node = all.iter().find(|it| it.1 == place).unwrap().0;

@@ -3,17 +3,17 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::bias::bias;
+use crate::board_completeness::is_whole;
+use crate::dark_regions::{Blob, SmoothedPicture};
+use crate::detection::{DetectedBoard, DetectedCorner, PointKind, RejectionReason};
 use crate::ellipse::{self, Dot};
-use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
-use crate::growth::Node;
-use crate::homography::Pair;
+use crate::growth::GridCorner;
+use crate::homography::PointPair;
 use crate::lattice::{Lattice, lattices, map_near, prune};
-use crate::layout::Layout;
+use crate::layout::BoardLayout;
 use crate::median::median;
-use crate::named::{Named, OFF, keep_round, pairs, radius, seek};
-use crate::parts::{Blob, Shades};
-use crate::whole::is_whole;
+use crate::numbered_dots::{NumberedDots, OFF, keep_round, pairs, radius, seek};
 
 /// Candidate dots for each dot of the board, of which one picture may have more.
 const FOR_EACH: usize = 3;
@@ -27,17 +27,27 @@ const FEWEST_PX: u32 = 12;
 const SAME: (f64, f64) = (0.3, 0.03);
 
 /// Finds a grid of dots that reaches over all its columns and rows.
-pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64, most: usize) -> Result<Found, Rejected> {
+pub(crate) fn detect(
+    gray: &Gray,
+    layout: &BoardLayout,
+    noise: f64,
+    most: usize,
+) -> Result<DetectedBoard, RejectionReason> {
     // The limit is at least a multiple of the board's own number of dots.
     let most = most.max(FOR_EACH * layout.corners());
     of_dots(gray, layout, noise, &dots(gray, noise, most)?)
 }
 
 /// Finds the grid among detected dots.
-pub(crate) fn of_dots(gray: &Gray, layout: &Layout, noise: f64, dots: &[Dot]) -> Result<Found, Rejected> {
-    let (mut most, mut reason) = (0, Rejected::NoBoard);
+pub(crate) fn of_dots(
+    gray: &Gray,
+    layout: &BoardLayout,
+    noise: f64,
+    dots: &[Dot],
+) -> Result<DetectedBoard, RejectionReason> {
+    let (mut most, mut reason) = (0, RejectionReason::NoBoard);
     for lattice in lattices(dots).into_iter().take(LATTICES) {
-        match named(gray, layout, noise, dots, &lattice) {
+        match name_dots(gray, layout, noise, dots, &lattice) {
             Ok(found) => return Ok(found),
             Err(other) if lattice.len() > most => (most, reason) = (lattice.len(), other),
             Err(_) => {}
@@ -47,8 +57,8 @@ pub(crate) fn of_dots(gray: &Gray, layout: &Layout, noise: f64, dots: &[Dot]) ->
 }
 
 /// Dark dots of any size, at most `most` candidates: each is compared with all others.
-pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, Rejected> {
-    let shades = Shades::new(gray, noise);
+pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, RejectionReason> {
+    let shades = SmoothedPicture::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Dot> = Vec::new();
     // A candidate that is no dot appears in several windows, too.
@@ -64,7 +74,7 @@ pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, Rej
                 continue;
             }
             if found.len() + refused.len() >= most {
-                return Err(Rejected::Many(most));
+                return Err(RejectionReason::Many(most));
             }
             match ellipse::fit(gray, blob.middle, to_circle, noise) {
                 Some(dot) => found.push(dot),
@@ -90,7 +100,7 @@ fn round(blob: &Blob) -> Option<Matrix2<f64>> {
 }
 
 /// Column and row on the board of a node of a lattice that is turned by this number of right angles.
-fn on_board(layout: &Layout, node: Node, turn: usize) -> Node {
+fn on_board(layout: &BoardLayout, node: GridCorner, turn: usize) -> GridCorner {
     let [u, v] = node;
     let [a, b] = match turn {
         0 => [u, v],
@@ -103,10 +113,10 @@ fn on_board(layout: &Layout, node: Node, turn: usize) -> Node {
 }
 
 /// Dots by columns and rows, without single ones beyond the board.
-fn peeled(layout: &Layout, lattice: &Lattice, turn: usize) -> Vec<(Node, usize)> {
-    let mut nodes: Vec<(Node, usize)> =
+fn peel_single_dots(layout: &BoardLayout, lattice: &Lattice, turn: usize) -> Vec<(GridCorner, usize)> {
+    let mut nodes: Vec<(GridCorner, usize)> =
         lattice.iter().map(|(node, dot)| (on_board(layout, *node, turn), *dot)).collect();
-    let size = layout.inner();
+    let size = layout.inner_corners();
     let least = nodes.len() - nodes.len() / BEYOND;
     while let Some([low, high]) = extent(&nodes) {
         let beyond = (0..2).filter(|k| (high[*k] - low[*k] + 1) as usize > size[*k]);
@@ -124,7 +134,7 @@ fn peeled(layout: &Layout, lattice: &Lattice, turn: usize) -> Vec<(Node, usize)>
     nodes
 }
 
-fn extent(nodes: &[(Node, usize)]) -> Option<[Node; 2]> {
+fn extent(nodes: &[(GridCorner, usize)]) -> Option<[GridCorner; 2]> {
     let (first, _) = nodes.first()?;
     Some(nodes.iter().fold([*first, *first], |[low, high], (node, _)| {
         [[0, 1].map(|k| low[k].min(node[k])), [0, 1].map(|k| high[k].max(node[k]))]
@@ -132,74 +142,81 @@ fn extent(nodes: &[(Node, usize)]) -> Option<[Node; 2]> {
 }
 
 /// The dots of a turned lattice with their numbers, if they extend over exactly the board.
-fn numbered(layout: &Layout, dots: &[Dot], lattice: &Lattice, turn: usize) -> Result<Named, Rejected> {
-    let nodes = peeled(layout, lattice, turn);
-    let [low, high] = extent(&nodes).ok_or(Rejected::NoBoard)?;
-    let (seen, size) = ([0, 1].map(|k| (high[k] - low[k] + 1) as usize), layout.inner());
+fn number_dots(
+    layout: &BoardLayout,
+    dots: &[Dot],
+    lattice: &Lattice,
+    turn: usize,
+) -> Result<NumberedDots, RejectionReason> {
+    let nodes = peel_single_dots(layout, lattice, turn);
+    let [low, high] = extent(&nodes).ok_or(RejectionReason::NoBoard)?;
+    let (seen, size) = ([0, 1].map(|k| (high[k] - low[k] + 1) as usize), layout.inner_corners());
     if seen[0].min(seen[1]) > size[0].min(size[1]) || seen[0].max(seen[1]) > size[0].max(size[1]) {
-        return Err(Rejected::Other);
+        return Err(RejectionReason::Other);
     }
     if seen != size || nodes.len() * 5 < layout.corners() * 3 {
-        return Err(Rejected::Few(nodes.len()));
+        return Err(RejectionReason::Few(nodes.len()));
     }
-    let number = |node: Node| layout.dot_at([0, 1].map(|k| (node[k] - low[k]) as usize));
+    let number = |node: GridCorner| layout.dot_at([0, 1].map(|k| (node[k] - low[k]) as usize));
     let all = nodes.iter().map(|(node, dot)| Some((number(*node)?, *dots.get(*dot)?)));
-    all.collect::<Option<_>>().ok_or(Rejected::Other)
+    all.collect::<Option<_>>().ok_or(RejectionReason::Other)
 }
 
 /// The board, if the lattice fits: among several fitting turns, the one whose first dot is farthest to the upper left.
-fn named(
+fn name_dots(
     gray: &Gray,
-    layout: &Layout,
+    layout: &BoardLayout,
     noise: f64,
     dots: &[Dot],
     lattice: &Lattice,
-) -> Result<Found, Rejected> {
-    let mut reason = Rejected::NoBoard;
-    let mut fitting: Vec<(f64, Named)> = Vec::new();
+) -> Result<DetectedBoard, RejectionReason> {
+    let mut reason = RejectionReason::NoBoard;
+    let mut fitting: Vec<(f64, NumberedDots)> = Vec::new();
     for turn in 0..4 {
-        match numbered(layout, dots, lattice, turn) {
+        match number_dots(layout, dots, lattice, turn) {
             Ok(named) => {
                 let first = map_near(&pairs(layout, &named), layout.corner(0))
                     .and_then(|it| it.0.map(layout.corner(0)));
                 fitting.push((first.map_or(f64::INFINITY, |it| it.x + it.y), named));
             }
-            Err(other) if matches!(reason, Rejected::NoBoard | Rejected::Few(_)) => reason = other,
+            Err(other) if matches!(reason, RejectionReason::NoBoard | RejectionReason::Few(_)) => {
+                reason = other
+            }
             Err(_) => {}
         }
     }
     let turnable = fitting.len() > 1;
     let (_, mut named) = fitting.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or(reason)?;
     prune(layout, &mut named, |it| it.place, OFF);
-    let radius = radius(layout, &named).ok_or(Rejected::NoBoard)?;
+    let radius = radius(layout, &named).ok_or(RejectionReason::NoBoard)?;
     keep_round(layout, &mut named, radius);
     seek(gray, layout, noise, &mut named, radius);
     keep_round(layout, &mut named, radius);
     prune(layout, &mut named, |it| it.place, OFF);
     if named.len() * 20 < layout.corners() * 13 || named.len() < 6 {
-        return Err(Rejected::Few(named.len()));
+        return Err(RejectionReason::Few(named.len()));
     }
     if !is_whole(gray, layout, noise, &named, radius) {
-        return Err(Rejected::Other);
+        return Err(RejectionReason::Other);
     }
-    let corners = corrected(layout, &named, radius);
+    let corners = correct_middles(layout, &named, radius);
     let blur_px = median(named.values().map(|it| it.blur_px)).unwrap_or(0.0);
-    Ok(Found { corners, markers: 0, turnable, blur_px, noise })
+    Ok(DetectedBoard { corners, markers: 0, turnable, blur_px, noise })
 }
 
 /// The middles of the circles: measured middles less the offset due to the tilt.
-fn corrected(layout: &Layout, named: &Named, radius: f64) -> Vec<Corner> {
+fn correct_middles(layout: &BoardLayout, named: &NumberedDots, radius: f64) -> Vec<DetectedCorner> {
     let measured = pairs(layout, named);
     let mut better = measured.clone();
     for _ in 0..2 {
-        let moved = |(point, place, weight): &Pair| {
+        let moved = |(point, place, weight): &PointPair| {
             (*point, place - bias(&better, *point, radius).unwrap_or_default(), *weight)
         };
         better = measured.iter().map(moved).collect();
     }
-    let corner = |((id, dot), (_, place, _)): ((&usize, &Dot), &Pair)| Corner {
+    let corner = |((id, dot), (_, place, _)): ((&usize, &Dot), &PointPair)| DetectedCorner {
         id: *id,
-        kind: Kind::Dot,
+        kind: PointKind::Dot,
         u_px: place.x,
         v_px: place.y,
         sigma_px: dot.sigma_px,

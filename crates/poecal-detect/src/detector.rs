@@ -1,19 +1,19 @@
 //! Corners of one board in pictures.
 
-use crate::found::{Found, Rejected};
+use crate::detection::{DetectedBoard, RejectionReason};
 use crate::gray::Gray;
-use crate::layout::Layout;
-use crate::light::{Light, noise};
-use crate::markers::Reader;
-use crate::spec::{AprilGrid, Charuco, Spec, Tags};
+use crate::layout::BoardLayout;
+use crate::light::{PictureLight, noise};
+use crate::markers::MarkerReader;
+use crate::spec::{AprilGrid, BoardSpec, Charuco, Tags};
 use crate::suggest::{self, Suggestion};
 use crate::{aprilgrid, charuco, chessboard, circles, tags};
 
 /// Finds the corners of one board.
 pub struct Detector {
-    spec: Spec,
-    layout: Layout,
-    reader: Option<Reader>,
+    spec: BoardSpec,
+    layout: BoardLayout,
+    reader: Option<MarkerReader>,
     most_dots: usize,
 }
 
@@ -28,14 +28,16 @@ const WHITE: f64 = 0.35;
 impl Detector {
     /// A detector of a board.
     #[must_use]
-    pub fn new(spec: &Spec) -> Self {
-        let layout = Layout::new(spec);
+    pub fn new(spec: &BoardSpec) -> Self {
+        let layout = BoardLayout::new(spec);
         let reader = match spec {
-            Spec::Charuco(Charuco { dictionary, .. }) | Spec::Tags(Tags { dictionary, .. }) => {
-                Some(Reader::new(dictionary))
+            BoardSpec::Charuco(Charuco { dictionary, .. }) | BoardSpec::Tags(Tags { dictionary, .. }) => {
+                Some(MarkerReader::new(dictionary))
             }
-            Spec::AprilGrid(AprilGrid { dictionary, .. }) => Some(Reader::with_border(dictionary, 2)),
-            Spec::Chessboard(_) | Spec::Circles(_) => None,
+            BoardSpec::AprilGrid(AprilGrid { dictionary, .. }) => {
+                Some(MarkerReader::with_border(dictionary, 2))
+            }
+            BoardSpec::Chessboard(_) | BoardSpec::Circles(_) => None,
         };
         Detector { spec: spec.clone(), layout, reader, most_dots: MOST_DOTS }
     }
@@ -48,13 +50,13 @@ impl Detector {
 
     /// The board.
     #[must_use]
-    pub fn spec(&self) -> &Spec {
+    pub fn spec(&self) -> &BoardSpec {
         &self.spec
     }
 
     /// Its geometry.
     #[must_use]
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &BoardLayout {
         &self.layout
     }
 
@@ -62,26 +64,28 @@ impl Detector {
     ///
     /// # Errors
     /// The reason for the rejection of a picture without corners.
-    pub fn detect(&self, gray: &Gray) -> Result<Found, Rejected> {
+    pub fn detect(&self, gray: &Gray) -> Result<DetectedBoard, RejectionReason> {
         let noise = noise(gray);
         let found = match (&self.spec, &self.reader) {
-            (Spec::Charuco(_), Some(reader)) => charuco::detect(gray, &self.layout, reader, noise),
-            (Spec::Tags(Tags { dictionary, .. }), Some(reader)) => {
+            (BoardSpec::Charuco(_), Some(reader)) => charuco::detect(gray, &self.layout, reader, noise),
+            (BoardSpec::Tags(Tags { dictionary, .. }), Some(reader)) => {
                 tags::detect(gray, dictionary, reader, noise)
             }
-            (Spec::AprilGrid(_), Some(reader)) => aprilgrid::detect(gray, &self.layout, reader, noise),
-            (Spec::Chessboard(_), _) => chessboard::detect(gray, &self.layout, noise),
-            (Spec::Charuco(_) | Spec::Tags(_) | Spec::AprilGrid(_), None) => Err(Rejected::NoBoard),
-            (Spec::Circles(_), _) => circles::detect(gray, &self.layout, noise, self.most_dots),
+            (BoardSpec::AprilGrid(_), Some(reader)) => aprilgrid::detect(gray, &self.layout, reader, noise),
+            (BoardSpec::Chessboard(_), _) => chessboard::detect(gray, &self.layout, noise),
+            (BoardSpec::Charuco(_) | BoardSpec::Tags(_) | BoardSpec::AprilGrid(_), None) => {
+                Err(RejectionReason::NoBoard)
+            }
+            (BoardSpec::Circles(_), _) => circles::detect(gray, &self.layout, noise, self.most_dots),
         };
         found.map_err(|reason| match reason {
-            Rejected::NoBoard => because_of_light(gray),
-            Rejected::Few(_)
-            | Rejected::Many(_)
-            | Rejected::Other
-            | Rejected::Blurred(_)
-            | Rejected::Dark(_)
-            | Rejected::Overexposed(_) => reason,
+            RejectionReason::NoBoard => because_of_light(gray),
+            RejectionReason::Few(_)
+            | RejectionReason::Many(_)
+            | RejectionReason::Other
+            | RejectionReason::Blurred(_)
+            | RejectionReason::Dark(_)
+            | RejectionReason::Overexposed(_) => reason,
         })
     }
 
@@ -92,15 +96,15 @@ impl Detector {
     }
 }
 
-fn because_of_light(gray: &Gray) -> Rejected {
-    let light = Light::new(gray);
+fn because_of_light(gray: &Gray) -> RejectionReason {
+    let light = PictureLight::new(gray);
     if light.lightest < DARK {
-        Rejected::Dark(light.lightest)
+        RejectionReason::Dark(light.lightest)
     } else if light.white > WHITE {
-        Rejected::Overexposed(light.white)
+        RejectionReason::Overexposed(light.white)
     } else if light.edge_px > WIDE_PX {
-        Rejected::Blurred(light.edge_px)
+        RejectionReason::Blurred(light.edge_px)
     } else {
-        Rejected::NoBoard
+        RejectionReason::NoBoard
     }
 }

@@ -6,8 +6,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use crate::gray::Gray;
-use crate::normal::{LANES, Lanes, Normal, Pixels, sign_and_bell};
-use crate::vector::vectorized;
+use crate::normal::{LANES, LaneArray, PixelEquations, Pixels, sign_and_bell};
+use crate::vector::run_vectorized;
 
 /// A detected dot.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub(crate) struct Dot {
 }
 
 const UNKNOWNS: usize = 10;
-type Unknowns = SVector<f64, UNKNOWNS>;
+type EllipseUnknowns = SVector<f64, UNKNOWNS>;
 
 /// Largest residual of the model beyond the noise, as a part of the contrast.
 const MISFIT: f64 = 0.22;
@@ -54,47 +54,47 @@ const MOST: usize = 40_000;
 /// Finds a dot near an ellipse: its middle, and the matrix that maps it to a unit circle. `None` if there is no dot.
 pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noise: f64) -> Option<Dot> {
     let pixels = window(gray, place, &to_circle)?;
-    let start = Model::start(place, to_circle, &pixels);
+    let start = EllipseModel::start(place, to_circle, &pixels);
     let reach = to_circle.try_inverse()?.norm() * 0.35 + 1.5;
-    let coarse = begun(start, &pixels, noise).filter(|it| (it.place - place).norm() < 1.2 * reach)?;
+    let coarse = fit_coarse(start, &pixels, noise).filter(|it| (it.place - place).norm() < 1.2 * reach)?;
     let mut middle = coarse.place;
     let mut pixels = window(gray, middle, &coarse.to_circle)?;
-    let (mut model, mut sums) = descended(coarse, &pixels, middle, FINE)?;
+    let (mut model, mut sums) = descend_dot(coarse, &pixels, middle, FINE)?;
     // A misplaced window omits informative pixels, and includes some of other dots.
     if is_far(&coarse, &model) {
         middle = model.place;
         pixels = window(gray, middle, &model.to_circle)?;
-        (model, sums) = descended(model, &pixels, middle, FINE)?;
+        (model, sums) = descend_dot(model, &pixels, middle, FINE)?;
     }
-    let dot = model.judged(&sums, pixels.len(), noise)?;
+    let dot = model.judge(&sums, pixels.len(), noise)?;
     let sound = (dot.place - place).norm() < reach && gray.holds(dot.place, 1.0);
     sound.then_some(dot)
 }
 
 /// A fit to a part of the pixels, which nearly converges, and rejects most candidates that are no dots: most candidates are none.
-fn begun(start: Model, pixels: &Pixels, noise: f64) -> Option<Model> {
+fn fit_coarse(start: EllipseModel, pixels: &Pixels, noise: f64) -> Option<EllipseModel> {
     // Blur reduces the contrast of a small dot only to a limited extent.
     if start.half < 0.5 * noise.max(LEAST_HALF) {
         return None;
     }
-    let few = thinned(pixels);
-    let (model, sums) = descended(start, &few, start.place, COARSE)?;
+    let few = thin_pixels(pixels);
+    let (model, sums) = descend_dot(start, &few, start.place, COARSE)?;
     let most = 1.5 * noise * noise + (COARSE_MISFIT * model.half).powi(2);
     (model.half > 0.0 && sums.squares < most * few.len() as f64).then_some(model)
 }
 
 /// True if a fit is farther from its start than the window of its pixels may be.
-fn is_far(start: &Model, fit: &Model) -> bool {
+fn is_far(start: &EllipseModel, fit: &EllipseModel) -> bool {
     let grown = (fit.to_circle - start.to_circle).norm() / start.to_circle.norm();
     (fit.place - start.place).norm() > 0.3 || grown > 0.03
 }
 
 /// Pixels that are spread evenly, if there are many.
-fn thinned(pixels: &Pixels) -> Pixels {
+fn thin_pixels(pixels: &Pixels) -> Pixels {
     let step = [10, 5, 2].into_iter().find(|step| pixels.len() >= step * ENOUGH).unwrap_or(1);
     let first = pixels.origin.x as i64 + 3 * pixels.origin.y as i64;
     let mut kept = Pixels::new(pixels.origin);
-    for [x, y, level] in pixels.each() {
+    for [x, y, level] in pixels.iter_pixels() {
         if (first + x as i64 + 3 * y as i64) % step as i64 == 0 {
             kept.push(x, y, level);
         }
@@ -118,13 +118,13 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
     }
     let mut pixels = Pixels::new(middle);
     let [x, y] = pixels.offset(middle);
-    let outline = Outline::new(to_circle, [x, y]);
+    let outline = EllipseOutline::new(to_circle, [x, y]);
     let columns = (middle.x - reach.x).ceil() as usize..(middle.x + reach.x) as usize + 1;
     let from = columns.start as f32 - pixels.origin.x as f32;
-    let mut offs: Vec<Lanes> = vec![[0.0; LANES]; columns.len().div_ceil(LANES)];
+    let mut offs: Vec<LaneArray> = vec![[0.0; LANES]; columns.len().div_ceil(LANES)];
     for row in (middle.y - reach.y).ceil() as usize..=(middle.y + reach.y) as usize {
         let y = row as f32 - pixels.origin.y as f32;
-        vectorized(
+        run_vectorized(
             #[inline(always)]
             || outline.row(from, y, &mut offs),
         );
@@ -140,14 +140,14 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
 }
 
 /// The outline of an ellipse near the origin of pixels.
-struct Outline {
+struct EllipseOutline {
     place: [f32; 2],
     /// Symmetric matrix that maps the ellipse to a unit circle: both diagonal elements, and the one beside them.
     to_circle: [f32; 3],
 }
 
 /// Distance of a point from an ellipse, with derivatives.
-struct Off {
+struct EllipseDistance {
     /// Distance to first order, positive outside.
     off: f32,
     /// Direction of its increase.
@@ -157,15 +157,15 @@ struct Off {
     steep: f32,
 }
 
-impl Outline {
+impl EllipseOutline {
     fn new(to_circle: &Matrix2<f64>, place: [f32; 2]) -> Self {
         let to_circle = [to_circle[(0, 0)], to_circle[(1, 1)], to_circle[(0, 1)]].map(|it| it as f32);
-        Outline { place, to_circle }
+        EllipseOutline { place, to_circle }
     }
 
     /// The distance of a point from the ellipse, by its vector from the middle.
     #[inline(always)]
-    fn distance(&self, dx: f32, dy: f32) -> Off {
+    fn distance(&self, dx: f32, dy: f32) -> EllipseDistance {
         let [xx, yy, xy] = self.to_circle;
         let (x, y) = (xx * dx + xy * dy, xy * dx + yy * dy);
         let radius = (x * x + y * y).sqrt().max(1e-6);
@@ -173,7 +173,7 @@ impl Outline {
         let (slope_x, slope_y) = (xx * x + xy * y, xy * x + yy * y);
         let steep = (slope_x * slope_x + slope_y * slope_y).sqrt().max(1e-9);
         let scale = 1.0 / steep;
-        Off {
+        EllipseDistance {
             off: (radius - 1.0) * scale,
             outwards: [slope_x * scale, slope_y * scale],
             circle: [x, y],
@@ -183,7 +183,7 @@ impl Outline {
 
     /// The distances of the pixels of a row from the ellipse.
     #[inline(always)]
-    fn row(&self, from: f32, y: f32, offs: &mut [Lanes]) {
+    fn row(&self, from: f32, y: f32, offs: &mut [LaneArray]) {
         for (at, offs) in offs.iter_mut().enumerate() {
             let first = from + (at * LANES) as f32 - self.place[0];
             for (k, off) in offs.iter_mut().enumerate() {
@@ -194,7 +194,7 @@ impl Outline {
 }
 
 #[derive(Clone, Copy)]
-struct Model {
+struct EllipseModel {
     place: Vector2<f64>,
     to_circle: Matrix2<f64>,
     blur: f64,
@@ -203,59 +203,59 @@ struct Model {
     light: Vector2<f64>,
 }
 
-struct Sums {
+struct EllipseSums {
     normal: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
-    right: Unknowns,
+    right: EllipseUnknowns,
     squares: f64,
 }
 
-impl Model {
+impl EllipseModel {
     fn start(place: Vector2<f64>, to_circle: Matrix2<f64>, pixels: &Pixels) -> Self {
-        let outline = Outline::new(&to_circle, pixels.offset(place));
+        let outline = EllipseOutline::new(&to_circle, pixels.offset(place));
         // Inside and outside pixels.
         let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
-        for [x, y, level] in pixels.each() {
+        for [x, y, level] in pixels.iter_pixels() {
             let side = outline.distance(x - outline.place[0], y - outline.place[1]).off >= 0.0;
             sums[usize::from(side)] += f64::from(level);
             counts[usize::from(side)] += 1.0;
         }
         let [dark, light] = [0, 1].map(|k| sums[k] / f64::max(counts[k], 1.0));
         let (mean, half) = (0.5 * (light + dark), 0.5 * (light - dark));
-        Model { place, to_circle, blur: 1.2, mean, half, light: Vector2::zeros() }
+        EllipseModel { place, to_circle, blur: 1.2, mean, half, light: Vector2::zeros() }
     }
 
-    fn sums(&self, pixels: &Pixels, middle: Vector2<f64>) -> Sums {
-        let outline = Outline::new(&self.to_circle, pixels.offset(self.place));
+    fn sums(&self, pixels: &Pixels, middle: Vector2<f64>) -> EllipseSums {
+        let outline = EllipseOutline::new(&self.to_circle, pixels.offset(self.place));
         let middle = pixels.offset(middle);
-        let (normal, right, squares) = vectorized(
+        let (normal, right, squares) = run_vectorized(
             #[inline(always)]
             || {
-                let mut sums = Normal::<UNKNOWNS>::new();
+                let mut sums = PixelEquations::<UNKNOWNS>::new();
                 for (pixels, count) in pixels.chunks() {
                     let (mut rows, mut residuals) = self.rows(&outline, middle, pixels);
                     sums.add(&mut rows, &mut residuals, count);
                 }
-                sums.finished()
+                sums.into_equations()
             },
         );
-        Sums { normal, right, squares }
+        EllipseSums { normal, right, squares }
     }
 
     /// Derivatives of the levels of pixels by the unknowns, and the residuals.
     #[inline(always)]
     fn rows(
         &self,
-        outline: &Outline,
+        outline: &EllipseOutline,
         middle: [f32; 2],
-        [xs, ys, levels]: &[Lanes; 3],
-    ) -> ([Lanes; UNKNOWNS], Lanes) {
+        [xs, ys, levels]: &[LaneArray; 3],
+    ) -> ([LaneArray; UNKNOWNS], LaneArray) {
         const ROOT: f32 = 0.797_884_6;
         let (mut rows, mut left) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
         let [by_blur, mean, half] = [1.0 / self.blur, self.mean, self.half].map(|it| it as f32);
         let slopes = [self.light.x as f32, self.light.y as f32];
         for at in 0..LANES {
             let (dx, dy) = (xs[at] - outline.place[0], ys[at] - outline.place[1]);
-            let Off { off, outwards, circle, steep } = outline.distance(dx, dy);
+            let EllipseDistance { off, outwards, circle, steep } = outline.distance(dx, dy);
             let (x, y) = (xs[at] - middle[0], ys[at] - middle[1]);
             let light = 1.0 + slopes[0] * x + slopes[1] * y;
             let (sign, bell) = sign_and_bell(off * by_blur);
@@ -278,12 +278,12 @@ impl Model {
         (rows, left)
     }
 
-    fn stepped(&self, step: &Unknowns) -> Self {
+    fn step_by(&self, step: &EllipseUnknowns) -> Self {
         let change = Matrix2::new(step[2], step[3], step[3], step[4]);
         let size = change.norm() / self.to_circle.norm();
         let long = (step[0].hypot(step[1]) / 1.5).max(size / 0.25).max(1.0);
         let step = step / long;
-        Model {
+        EllipseModel {
             place: self.place + Vector2::new(step[0], step[1]),
             to_circle: self.to_circle + change / long,
             blur: (self.blur * step[5].clamp(-0.7, 0.7).exp()).clamp(0.25, 8.0),
@@ -294,7 +294,7 @@ impl Model {
     }
 
     /// The dot, if the model explains the pixels.
-    fn judged(&self, sums: &Sums, pixels: usize, noise: f64) -> Option<Dot> {
+    fn judge(&self, sums: &EllipseSums, pixels: usize, noise: f64) -> Option<Dot> {
         let variance = sums.squares / pixels.saturating_sub(UNKNOWNS).max(1) as f64;
         let covariance = sums.normal.cholesky()?.inverse() * variance;
         let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
@@ -310,18 +310,18 @@ impl Model {
         // Residual beyond the noise that chance does not explain.
         let chance = 1.0 + 2.5 * (2.0 / pixels as f64).sqrt();
         let beyond = (variance - noise * noise * chance).max(0.0).sqrt();
-        let (Model { place, to_circle, blur, mean, half, .. }, misfit) = (*self, beyond / self.half);
+        let (EllipseModel { place, to_circle, blur, mean, half, .. }, misfit) = (*self, beyond / self.half);
         good.then_some(Dot { place, to_circle, sigma_px, blur_px: blur, half_contrast: half, mean, misfit })
     }
 }
 
 /// Levenberg-Marquardt from a start, until a step is short and its gain small.
-fn descended(
-    mut model: Model,
+fn descend_dot(
+    mut model: EllipseModel,
     pixels: &Pixels,
     middle: Vector2<f64>,
     [short_px, little]: [f64; 2],
-) -> Option<(Model, Sums)> {
+) -> Option<(EllipseModel, EllipseSums)> {
     let mut sums = model.sums(pixels, middle);
     let mut damping = 1e-3;
     for _ in 0..10 {
@@ -329,7 +329,7 @@ fn descended(
         for k in 0..UNKNOWNS {
             damped[(k, k)] = damped[(k, k)] * (1.0 + damping) + 1e-12;
         }
-        let next = model.stepped(&damped.cholesky()?.solve(&sums.right));
+        let next = model.step_by(&damped.cholesky()?.solve(&sums.right));
         let found = next.sums(pixels, middle);
         if found.squares <= sums.squares {
             let moved = (next.place - model.place).norm();

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::error::{Error, Result};
 use crate::normal::{LANES, lanes};
-use crate::vector::vectorized;
+use crate::vector::run_vectorized;
 
 /// A gray picture: levels from 0 (black) to 255 (white), row by row. Pictures of more than 8 bits keep their fractions.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Gray {
         Gray::new(width, height, bytes.iter().map(|it| f32::from(*it)).collect())
     }
 
-    pub(crate) fn filled(width: usize, height: usize, level: f32) -> Self {
+    pub(crate) fn from_level(width: usize, height: usize, level: f32) -> Self {
         Gray { width, height, levels: vec![level; width * height] }
     }
 
@@ -91,7 +91,7 @@ impl Gray {
 
     /// The level at a point between pixels, bilinear; outside the picture that of the nearest border.
     #[inline]
-    pub(crate) fn at(&self, place: Vector2<f64>) -> f64 {
+    pub(crate) fn level_at(&self, place: Vector2<f64>) -> f64 {
         let x = place.x.clamp(0.0, self.width as f64 - 1.0);
         let y = place.y.clamp(0.0, self.height as f64 - 1.0);
         // Short integers are converted faster.
@@ -110,7 +110,7 @@ impl Gray {
 
     /// The picture with a Gaussian blur, truncated at this number of standard deviations.
     #[must_use]
-    pub fn blurred(&self, sigma_px: f64, deviations: f64) -> Self {
+    pub fn blur(&self, sigma_px: f64, deviations: f64) -> Self {
         let reach = (deviations * sigma_px).ceil().clamp(0.0, 1000.0) as usize;
         if reach == 0 {
             return self.clone();
@@ -118,17 +118,17 @@ impl Gray {
         let weight = |k: usize| (-0.5 * ((k as f64 - reach as f64) / sigma_px).powi(2)).exp();
         let total: f64 = (0..=2 * reach).map(weight).sum();
         let weights: Vec<f32> = (0..=2 * reach).map(|k| (weight(k) / total) as f32).collect();
-        vectorized(
+        run_vectorized(
             #[inline(always)]
-            || self.weighted(&weights),
+            || self.convolve(&weights),
         )
     }
 
     /// Sums over a row of pixels in both directions, with weights.
     #[inline(always)]
-    fn weighted(&self, weights: &[f32]) -> Self {
+    fn convolve(&self, weights: &[f32]) -> Self {
         let (width, height, reach) = (self.width, self.height, weights.len() / 2);
-        let mut across = Gray::filled(width, height, 0.0);
+        let mut across = Gray::from_level(width, height, 0.0);
         let mut padded = vec![0.0; width + 2 * reach];
         for (row, target) in across.levels.chunks_exact_mut(width).enumerate() {
             let levels = self.row(row);
@@ -137,7 +137,7 @@ impl Gray {
             padded[reach + width..].fill(levels[width - 1]);
             sums(target, weights, |k| &padded[k..]);
         }
-        let mut whole = Gray::filled(width, height, 0.0);
+        let mut whole = Gray::from_level(width, height, 0.0);
         for (row, target) in whole.levels.chunks_exact_mut(width).enumerate() {
             sums(target, weights, |k| across.row((row + k).saturating_sub(reach).min(height - 1)));
         }

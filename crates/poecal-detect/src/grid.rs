@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, VecDeque};
 use nalgebra::{Matrix2, Vector2};
 
 use crate::gray::Gray;
-use crate::growth::Node;
+use crate::growth::GridCorner;
 use crate::normal::LANES;
-use crate::vector::vectorized;
+use crate::vector::run_vectorized;
 
 /// Corners of one grid, each with its column and row.
-pub(crate) type Grid = Vec<(Node, Vector2<f64>)>;
+pub(crate) type CornerGrid = Vec<(GridCorner, Vector2<f64>)>;
 
 /// Blurs before second derivatives are taken, pixels: for sharp pictures, and for dim or blurred ones.
 pub(crate) const SCALES_PX: [f64; 2] = [1.8, 3.6];
@@ -54,14 +54,14 @@ impl Cross {
 }
 
 /// Grids of squares in a picture, the largest first: x and y as on a board seen from the front.
-pub(crate) fn grids(gray: &Gray, noise: f64, blur_px: f64) -> Vec<Grid> {
-    let smooth = gray.blurred(blur_px, 2.6);
+pub(crate) fn grids(gray: &Gray, noise: f64, blur_px: f64) -> Vec<CornerGrid> {
+    let smooth = gray.blur(blur_px, 2.6);
     // Noise has a standard deviation of `0.244 / σ³` of a pixel's in a second derivative.
     let least = (LEAST / blur_px.powi(2)).max(BESIDE_NOISE * 0.244 / blur_px.powi(3) * noise);
     let mut crosses = crosses(&smooth, least, blur_px);
     join(&smooth, &mut crosses);
     let mut free = vec![true; crosses.len()];
-    let mut grids: Vec<Grid> = Vec::new();
+    let mut grids: Vec<CornerGrid> = Vec::new();
     for first in 0..crosses.len() {
         if free[first] && crosses[first].next.iter().flatten().count() >= 2 {
             grids.push(grid_from(&crosses, first, &mut free));
@@ -79,7 +79,7 @@ const KEPT: usize = 2 * BESIDE + 1;
 
 /// Points whose second derivatives are those of a saddle, the strongest first.
 fn crosses(smooth: &Gray, least: f64, blur_px: f64) -> Vec<Cross> {
-    let mut found = vectorized(
+    let mut found = run_vectorized(
         #[inline(always)]
         || peaks(smooth, least.powi(2) as f32, blur_px),
     );
@@ -133,14 +133,14 @@ fn strengths(rows: [&[f32]; 5], target: &mut [f32]) {
     let width = target.len();
     let rows = rows.map(|it| &it[..width]);
     for x in 2..width.saturating_sub(2) {
-        let [xx, xy, yy] = second(&rows, x);
+        let [xx, xy, yy] = second_derivatives(&rows, x);
         target[x] = xy * xy - xx * yy;
     }
 }
 
 /// Second derivatives by x twice, by both, and by y twice: differences of differences, so that a straight edge has none across itself.
 #[inline(always)]
-fn second(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
+fn second_derivatives(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
     let middle = rows[2];
     let xx = middle[x - 2] + middle[x + 2] - 2.0 * middle[x];
     let xy = rows[1][x - 1] + rows[3][x + 1] - rows[1][x + 1] - rows[3][x - 1];
@@ -151,7 +151,7 @@ fn second(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
 /// A saddle with its edges.
 fn cross_at(smooth: &Gray, [x, row]: [usize; 2], own: f32, blur_px: f64) -> Option<Cross> {
     let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
-    let [xx, xy, yy] = second(&rows, x).map(f64::from);
+    let [xx, xy, yy] = second_derivatives(&rows, x).map(f64::from);
     let (middle, half) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     let (up, down) = (half + middle, half - middle);
     let is_saddle = up.min(down) > NARROW * up.max(down);
@@ -185,7 +185,7 @@ fn edges(smooth: &Gray, place: Vector2<f64>, radius_px: f64) -> Option<[Vector2<
     };
     let mut levels = [0.0; POINTS];
     for (k, level) in levels.iter_mut().enumerate() {
-        *level = smooth.at(place + direction(k as f64) * radius_px);
+        *level = smooth.level_at(place + direction(k as f64) * radius_px);
     }
     let limit = 0.5
         * (levels.iter().copied().fold(f64::INFINITY, f64::min) + levels.iter().copied().fold(0.0, f64::max));
@@ -213,13 +213,13 @@ fn edges(smooth: &Gray, place: Vector2<f64>, radius_px: f64) -> Option<[Vector2<
 fn join(smooth: &Gray, crosses: &mut [Cross]) {
     let size = smooth.width().max(smooth.height()) as f64;
     let longest = if crosses.len() > MANY { 3.0 * NEAR_PX } else { LONGEST * size };
-    let cells = Cells::new(crosses);
+    let cells = CellIndex::new(crosses);
     let nearest: Vec<[Option<usize>; 4]> = (0..crosses.len())
         .map(|own| {
             let mut found = [None; 4];
-            neighbours(smooth, crosses, own, &cells.near(crosses[own].place, NEAR_PX), &mut found);
+            neighbours(smooth, crosses, own, &cells.find_near(crosses[own].place, NEAR_PX), &mut found);
             if found.contains(&None) {
-                neighbours(smooth, crosses, own, &cells.near(crosses[own].place, longest), &mut found);
+                neighbours(smooth, crosses, own, &cells.find_near(crosses[own].place, longest), &mut found);
             }
             found
         })
@@ -233,15 +233,15 @@ fn join(smooth: &Gray, crosses: &mut [Cross]) {
 }
 
 /// Crossings by the cell of the picture that contains them.
-struct Cells(BTreeMap<(i32, i32), Vec<usize>>);
+struct CellIndex(BTreeMap<(i32, i32), Vec<usize>>);
 
-impl Cells {
+impl CellIndex {
     fn new(crosses: &[Cross]) -> Self {
         let mut cells: BTreeMap<_, Vec<usize>> = BTreeMap::new();
         for (at, cross) in crosses.iter().enumerate() {
-            cells.entry(Cells::cell(cross.place)).or_default().push(at);
+            cells.entry(CellIndex::cell(cross.place)).or_default().push(at);
         }
-        Cells(cells)
+        CellIndex(cells)
     }
 
     fn cell(place: Vector2<f64>) -> (i32, i32) {
@@ -249,8 +249,8 @@ impl Cells {
     }
 
     /// Crossings within a distance of a point.
-    fn near(&self, place: Vector2<f64>, reach_px: f64) -> Vec<usize> {
-        let (x, y) = Cells::cell(place);
+    fn find_near(&self, place: Vector2<f64>, reach_px: f64) -> Vec<usize> {
+        let (x, y) = CellIndex::cell(place);
         let reach = (reach_px / NEAR_PX).ceil() as i32;
         let columns = (x - reach)..=(x + reach);
         let cells = columns.flat_map(|x| self.0.range((x, y - reach)..=(x, y + reach)));
@@ -313,7 +313,7 @@ fn is_next(smooth: &Gray, from: &Cross, to: &Cross) -> bool {
     let beside = across * (0.18 * length).clamp(2.5, 6.0);
     let steps = [0.25, 0.4, 0.5, 0.6, 0.75].map(|part| {
         let at = from.place + (to.place - from.place) * part;
-        smooth.at(at + beside) - smooth.at(at - beside)
+        smooth.level_at(at + beside) - smooth.level_at(at - beside)
     });
     let least = steps.iter().map(|it| it.abs()).fold(f64::INFINITY, f64::min);
     let most = steps.iter().map(|it| it.abs()).fold(0.0, f64::max);
@@ -322,10 +322,10 @@ fn is_next(smooth: &Gray, from: &Cross, to: &Cross) -> bool {
 }
 
 /// All crossings that are joined with one, with columns and rows.
-fn grid_from(crosses: &[Cross], first: usize, free: &mut [bool]) -> Grid {
+fn grid_from(crosses: &[Cross], first: usize, free: &mut [bool]) -> CornerGrid {
     // Axes x and y of the grid at each crossing.
-    let mut frames: BTreeMap<usize, (Node, [Vector2<f64>; 2])> = BTreeMap::new();
-    let mut taken: BTreeMap<Node, usize> = BTreeMap::new();
+    let mut frames: BTreeMap<usize, (GridCorner, [Vector2<f64>; 2])> = BTreeMap::new();
+    let mut taken: BTreeMap<GridCorner, usize> = BTreeMap::new();
     let [a, b] = crosses[first].edges;
     frames.insert(first, ([0, 0], [a, b]));
     taken.insert([0, 0], first);
@@ -368,9 +368,9 @@ fn nearest_axis(cross: &Cross, axis: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// The affine map of a whole grid, pixels per square.
-pub(crate) fn middle_slope(grid: &Grid) -> Option<Matrix2<f64>> {
+pub(crate) fn middle_slope(grid: &CornerGrid) -> Option<Matrix2<f64>> {
     let count = grid.len() as f64;
-    let at = |node: Node| Vector2::new(f64::from(node[0]), f64::from(node[1]));
+    let at = |node: GridCorner| Vector2::new(f64::from(node[0]), f64::from(node[1]));
     let plane = grid.iter().map(|it| at(it.0)).sum::<Vector2<f64>>() / count;
     let picture = grid.iter().map(|it| it.1).sum::<Vector2<f64>>() / count;
     let (mut spread, mut both) = (Matrix2::zeros(), Matrix2::zeros());

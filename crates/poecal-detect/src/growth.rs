@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use crate::gray::Gray;
-use crate::homography::{Homography, Pair, map_near};
+use crate::homography::{Homography, PointPair, map_near};
 use crate::median::median;
-use crate::saddle::{Expected, Saddle, refine};
+use crate::saddle::{Saddle, SaddlePrior, refine};
 
 /// A corner of squares: columns and rows before it.
-pub(crate) type Node = [i32; 2];
+pub(crate) type GridCorner = [i32; 2];
 
 /// Detected corners of a board, and the points from which they were found.
-pub(crate) struct Growth<'a> {
+pub(crate) struct BoardGrowth<'a> {
     gray: &'a Gray,
     pub(crate) noise: f64,
     /// Distance from a corner within which its squares are plain, squares.
@@ -21,10 +21,10 @@ pub(crate) struct Growth<'a> {
     /// True if the square (0, 0) is dark.
     first_dark: bool,
     /// Less accurate points of the board: corners of markers.
-    pub(crate) anchors: Vec<Pair>,
-    pub(crate) nodes: BTreeMap<Node, Saddle>,
+    pub(crate) anchors: Vec<PointPair>,
+    pub(crate) nodes: BTreeMap<GridCorner, Saddle>,
     /// Positions at which corners were searched for without success.
-    tried: BTreeMap<Node, Vector2<f64>>,
+    tried: BTreeMap<GridCorner, Vector2<f64>>,
 }
 
 /// Standard deviation of the weights of points by their distance, and the largest distance of a map, squares.
@@ -37,18 +37,18 @@ const OFF: (f64, f64) = (0.8, 0.035);
 /// Ratio of a corner's standard deviation to the usual one from which it is rejected.
 const VAGUE: f64 = 6.0;
 
-pub(crate) fn place_of(node: Node) -> Vector2<f64> {
+pub(crate) fn place_of(node: GridCorner) -> Vector2<f64> {
     Vector2::new(f64::from(node[0]), f64::from(node[1]))
 }
 
-impl<'a> Growth<'a> {
+impl<'a> BoardGrowth<'a> {
     pub(crate) fn new(gray: &'a Gray, noise: f64, plain: f64, first_dark: bool) -> Self {
         let (anchors, nodes, tried) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
-        Growth { gray, noise, plain, first_dark, anchors, nodes, tried }
+        BoardGrowth { gray, noise, plain, first_dark, anchors, nodes, tried }
     }
 
     /// True if the square before a corner is dark.
-    pub(crate) fn dark_before(&self, node: Node) -> bool {
+    pub(crate) fn dark_before(&self, node: GridCorner) -> bool {
         ((node[0] + node[1]) % 2 == 0) == self.first_dark
     }
 
@@ -59,7 +59,7 @@ impl<'a> Growth<'a> {
     }
 
     /// Searches for missing corners among some, from the nearest outwards, until none is added.
-    pub(crate) fn grow(&mut self, candidates: &[Node]) {
+    pub(crate) fn grow(&mut self, candidates: &[GridCorner]) {
         const ROUNDS: usize = 40;
         for _ in 0..ROUNDS {
             let mut added = false;
@@ -67,7 +67,7 @@ impl<'a> Growth<'a> {
                 if self.nodes.contains_key(node) {
                     continue;
                 }
-                let Some(expected) = self.expected(*node) else { continue };
+                let Some(expected) = self.predict_node(*node) else { continue };
                 let known = self.tried.get(node);
                 if known.is_some_and(|it| (it - expected.place).norm() < 0.5) {
                     continue;
@@ -88,7 +88,7 @@ impl<'a> Growth<'a> {
         }
     }
 
-    fn expected(&self, node: Node) -> Option<Expected> {
+    fn predict_node(&self, node: GridCorner) -> Option<SaddlePrior> {
         let point = place_of(node);
         let (map, nearest) = self.map_near(point)?;
         if nearest > STEP {
@@ -100,13 +100,18 @@ impl<'a> Growth<'a> {
         }
         let square_px = slope.determinant().abs().sqrt();
         let search_px = (1.0 + 0.06 * square_px * nearest.max(0.5)).min(0.2 * square_px).max(1.0);
-        Some(Expected { place, slope, plain: self.plain, dark_before: self.dark_before(node), search_px })
+        Some(SaddlePrior { place, slope, plain: self.plain, dark_before: self.dark_before(node), search_px })
     }
 
     /// Adds a corner near a position, with a slope of the board there.
-    pub(crate) fn seed(&mut self, node: Node, place: Vector2<f64>, slope: nalgebra::Matrix2<f64>) -> bool {
+    pub(crate) fn seed(
+        &mut self,
+        node: GridCorner,
+        place: Vector2<f64>,
+        slope: nalgebra::Matrix2<f64>,
+    ) -> bool {
         let dark_before = self.dark_before(node);
-        let expected = Expected { place, slope, plain: self.plain, dark_before, search_px: 2.0 };
+        let expected = SaddlePrior { place, slope, plain: self.plain, dark_before, search_px: 2.0 };
         let found = refine(self.gray, &expected, self.noise);
         if let Some(saddle) = found {
             self.nodes.insert(node, saddle);
@@ -116,14 +121,14 @@ impl<'a> Growth<'a> {
 
     /// Removes corners that contradict the prediction by their neighbours, the worst first; those without neighbours too.
     pub(crate) fn prune(&mut self) {
-        while let Some(worst) = self.worst() {
+        while let Some(worst) = self.worst_node() {
             self.nodes.remove(&worst);
         }
     }
 
-    fn worst(&self) -> Option<Node> {
+    fn worst_node(&self) -> Option<GridCorner> {
         let usual_px = median(self.nodes.values().map(|it| it.sigma_px))?.max(0.02);
-        let off = |(node, saddle): (&Node, &Saddle)| {
+        let off = |(node, saddle): (&GridCorner, &Saddle)| {
             let point = place_of(*node);
             let predicted = self.map_near(point).and_then(|(map, nearest)| {
                 let square_px = map.slope(point)?.determinant().abs().sqrt();

@@ -9,15 +9,15 @@ pub(crate) struct Homography {
 }
 
 /// A point of the plane, its position in the picture, and its weight.
-pub(crate) type Pair = (Vector2<f64>, Vector2<f64>, f64);
+pub(crate) type PointPair = (Vector2<f64>, Vector2<f64>, f64);
 
 /// Pairs near a point of the plane, with weights that decrease with the distance from it: by their standard deviation, and the largest distance.
-pub(crate) fn near(
-    pairs: impl IntoIterator<Item = Pair>,
+pub(crate) fn weight_pairs_near(
+    pairs: impl IntoIterator<Item = PointPair>,
     point: Vector2<f64>,
     [deviation, farthest]: [f64; 2],
-) -> Vec<Pair> {
-    let weighed = |(plane, place, weight): Pair| {
+) -> Vec<PointPair> {
+    let weighed = |(plane, place, weight): PointPair| {
         let square = (plane - point).norm_squared();
         let fallen = weight * (-0.5 * square / (deviation * deviation)).exp();
         (square < farthest * farthest).then_some((plane, place, fallen))
@@ -27,12 +27,12 @@ pub(crate) fn near(
 
 /// The map near a point of the plane, from the surrounding pairs without that point, and the distance of the nearest of them.
 pub(crate) fn map_near(
-    pairs: impl IntoIterator<Item = Pair>,
+    pairs: impl IntoIterator<Item = PointPair>,
     point: Vector2<f64>,
     reach: [f64; 2],
 ) -> Option<(Homography, f64)> {
-    let square = |it: &Pair| (it.0 - point).norm_squared();
-    let around = near(pairs.into_iter().filter(|it| square(it) > 1e-6), point, reach);
+    let square = |it: &PointPair| (it.0 - point).norm_squared();
+    let around = weight_pairs_near(pairs.into_iter().filter(|it| square(it) > 1e-6), point, reach);
     let nearest = around.iter().map(square).fold(f64::INFINITY, f64::min);
     Some((Homography::fit(&around)?, nearest.sqrt()))
 }
@@ -40,12 +40,12 @@ pub(crate) fn map_near(
 impl Homography {
     /// The map that fits pairs best: the direct linear transformation with both sides centred and scaled. `None` with fewer than four pairs, or for
     /// collinear points.
-    pub(crate) fn fit(pairs: &[Pair]) -> Option<Self> {
+    pub(crate) fn fit(pairs: &[PointPair]) -> Option<Self> {
         if pairs.len() < 4 {
             return None;
         }
-        let from = Scaling::new(pairs.iter().map(|it| (it.0, it.2)))?;
-        let to = Scaling::new(pairs.iter().map(|it| (it.1, it.2)))?;
+        let from = PointScaling::new(pairs.iter().map(|it| (it.0, it.2)))?;
+        let to = PointScaling::new(pairs.iter().map(|it| (it.1, it.2)))?;
         // The last element is fixed to 1, so there are eight unknowns. In coordinates about the middle of the points it is not near 0.
         let mut normal = SMatrix::<f64, 8, 8>::zeros();
         let mut right = SVector::<f64, 8>::zeros();
@@ -88,7 +88,7 @@ impl Homography {
     }
 
     /// Rows of the matrix relative to an origin at which its last row is 1.
-    pub(crate) fn around(&self, origin: Vector2<f64>) -> [[f32; 3]; 3] {
+    pub(crate) fn rows_about(&self, origin: Vector2<f64>) -> [[f32; 3]; 3] {
         let moved = self.matrix * Matrix3::new_translation(&origin);
         let scaled = moved / moved[(2, 2)];
         [0, 1, 2].map(|row| [0, 1, 2].map(|column| scaled[(row, column)] as f32))
@@ -109,17 +109,17 @@ impl Homography {
 }
 
 /// Transformation that moves the middle of points to zero, and scales their spread to one.
-struct Scaling {
+struct PointScaling {
     middle: Vector2<f64>,
     factor: f64,
 }
 
-impl Scaling {
+impl PointScaling {
     fn new(points: impl Iterator<Item = (Vector2<f64>, f64)> + Clone) -> Option<Self> {
         let total: f64 = points.clone().map(|it| it.1).sum();
         let middle = points.clone().map(|it| it.0 * it.1).sum::<Vector2<f64>>() / total;
         let spread = (points.map(|it| (it.0 - middle).norm_squared() * it.1).sum::<f64>() / total).sqrt();
-        (spread > 0.0 && spread.is_finite()).then(|| Scaling { middle, factor: 1.0 / spread })
+        (spread > 0.0 && spread.is_finite()).then(|| PointScaling { middle, factor: 1.0 / spread })
     }
 
     fn apply(&self, point: Vector2<f64>) -> Vector2<f64> {
@@ -141,7 +141,7 @@ mod tests {
         let truth =
             Homography { matrix: Matrix3::new(80.0, -7.0, 500.0, 12.0, 60.0, 300.0, 0.02, -0.03, 1.0) };
         let places = (0..4).flat_map(|x| (0..3).map(move |y| Vector2::new(f64::from(x), f64::from(y))));
-        let pairs: Vec<Pair> = places.map(|it| (it, truth.map(it).unwrap(), 2.0)).collect();
+        let pairs: Vec<PointPair> = places.map(|it| (it, truth.map(it).unwrap(), 2.0)).collect();
         let found = Homography::fit(&pairs).unwrap();
         let at = Vector2::new(1.3, 0.7);
         let error = (found.map(at).unwrap() - truth.map(at).unwrap()).norm();
@@ -153,7 +153,7 @@ mod tests {
         );
         // Rounding, times the condition of eight unknowns; differences of 1e-6.
         assert!(error < 1e-8 && (slope - truth.slope(at).unwrap().column(0)).norm() < 1e-3);
-        let line: Vec<Pair> =
+        let line: Vec<PointPair> =
             (0..6).map(|k| (Vector2::new(f64::from(k), 0.0), Vector2::zeros(), 1.0)).collect();
         assert!(Homography::fit(&line).is_none() && Homography::fit(&pairs[..3]).is_none());
     }

@@ -6,12 +6,12 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::ellipse::Dot;
 use crate::grid::middle_slope;
-use crate::growth::Node;
-use crate::homography::{self, Homography, Pair};
-use crate::layout::Layout;
+use crate::growth::GridCorner;
+use crate::homography::{self, Homography, PointPair};
+use crate::layout::BoardLayout;
 
 /// Dots with their columns and rows.
-pub(crate) type Lattice = BTreeMap<Node, usize>;
+pub(crate) type Lattice = BTreeMap<GridCorner, usize>;
 
 /// Farthest neighbour, in radii of the dot.
 const FARTHEST: f64 = 9.0;
@@ -26,7 +26,7 @@ const ALIKE_FAR: [f64; 2] = [1.25, 1.35];
 const REACH: [f64; 2] = [1.6, 4.2];
 
 /// The next nodes of a lattice, and those beyond, if an occlusion covers a part of the board.
-const STEPS: [Node; 12] =
+const STEPS: [GridCorner; 12] =
     [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1], [2, 0], [0, 2], [-2, 0], [0, -2]];
 
 /// Lattices of dots, the largest first: x and y as on a board seen from the front.
@@ -37,7 +37,7 @@ pub(crate) fn lattices(dots: &[Dot]) -> Vec<Lattice> {
         if !free[first] {
             continue;
         }
-        let found = bases(dots, first).into_iter().map(|basis| flooded(dots, first, basis));
+        let found = bases(dots, first).into_iter().map(|basis| flood_lattice(dots, first, basis));
         let Some(lattice) = found.max_by_key(Lattice::len) else { continue };
         if lattice.len() >= 6 {
             lattice.values().for_each(|at| free[*at] = false);
@@ -48,7 +48,7 @@ pub(crate) fn lattices(dots: &[Dot]) -> Vec<Lattice> {
     all
 }
 
-fn alike(a: &Dot, b: &Dot, [largest, strongest]: [f64; 2]) -> bool {
+fn are_similar_dots(a: &Dot, b: &Dot, [largest, strongest]: [f64; 2]) -> bool {
     let size = |it: &Dot| it.to_circle.determinant().sqrt();
     let (ratio, contrast) = (size(a) / size(b), a.half_contrast / b.half_contrast);
     ratio.max(1.0 / ratio) < largest && contrast.max(1.0 / contrast) < strongest
@@ -60,7 +60,7 @@ fn bases(dots: &[Dot], own: usize) -> Vec<Matrix2<f64>> {
     let mut near: Vec<(Vector2<f64>, Vector2<f64>)> = dots
         .iter()
         .enumerate()
-        .filter(|(at, it)| *at != own && alike(dot, it, ALIKE))
+        .filter(|(at, it)| *at != own && are_similar_dots(dot, it, ALIKE))
         .map(|(_, it)| (dot.to_circle * (it.place - dot.place), it.place - dot.place))
         .filter(|it| (NEAREST..FARTHEST).contains(&it.0.norm()))
         .collect();
@@ -84,7 +84,7 @@ fn bases(dots: &[Dot], own: usize) -> Vec<Matrix2<f64>> {
 }
 
 /// All dots that are joined with one.
-fn flooded(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
+fn flood_lattice(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
     let mut lattice = Lattice::from([([0, 0], first)]);
     let mut places = vec![([0, 0], dots[first].place)];
     let mut taken = vec![false; dots.len()];
@@ -97,7 +97,7 @@ fn flooded(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
         let (before, node) = (places.len(), places[at].0);
         let steps = if far { &STEPS[4..] } else { &STEPS[..4] };
         for step in steps {
-            joined(dots, &mut lattice, &mut places, &mut taken, (node, *step), &basis);
+            join_dot(dots, &mut lattice, &mut places, &mut taken, (node, *step), &basis);
         }
         if far && places.len() > before {
             tried = before;
@@ -107,25 +107,26 @@ fn flooded(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
 }
 
 /// Joins the dot that is a step from another one, if there is one.
-fn joined(
+fn join_dot(
     dots: &[Dot],
     lattice: &mut Lattice,
-    places: &mut Vec<(Node, Vector2<f64>)>,
+    places: &mut Vec<(GridCorner, Vector2<f64>)>,
     taken: &mut [bool],
-    (node, step): (Node, Node),
+    (node, step): (GridCorner, GridCorner),
     basis: &Matrix2<f64>,
 ) {
     let next = [node[0] + step[0], node[1] + step[1]];
     if lattice.contains_key(&next) {
         return;
     }
-    let Some((place, pitch_px)) = predicted(places, node, next, basis) else { return };
+    let Some((place, pitch_px)) = predict_place(places, node, next, basis) else { return };
     let near = |other: usize| (dots[other].place - place).norm();
     let Some(own) = lattice.get(&node).map(|at| dots[*at]) else { return };
     let all = (0..dots.len()).filter(|other| !taken[*other] && near(*other) < ASIDE * pitch_px);
     let limits = if step[0].abs() + step[1].abs() > 1 { ALIKE_FAR } else { ALIKE };
-    let best =
-        all.filter(|other| alike(&dots[*other], &own, limits)).min_by(|a, b| near(*a).total_cmp(&near(*b)));
+    let best = all
+        .filter(|other| are_similar_dots(&dots[*other], &own, limits))
+        .min_by(|a, b| near(*a).total_cmp(&near(*b)));
     if let Some(other) = best {
         taken[other] = true;
         lattice.insert(next, other);
@@ -134,13 +135,13 @@ fn joined(
 }
 
 /// Position of a node beside another one, by the surrounding nodes, and the length of this step.
-fn predicted(
-    places: &[(Node, Vector2<f64>)],
-    own: Node,
-    next: Node,
+fn predict_place(
+    places: &[(GridCorner, Vector2<f64>)],
+    own: GridCorner,
+    next: GridCorner,
     basis: &Matrix2<f64>,
 ) -> Option<(Vector2<f64>, f64)> {
-    let near: Vec<(Node, Vector2<f64>)> = places
+    let near: Vec<(GridCorner, Vector2<f64>)> = places
         .iter()
         .filter(|it| (it.0[0] - own[0]).abs() <= 2 && (it.0[1] - own[1]).abs() <= 2)
         .copied()
@@ -158,20 +159,21 @@ fn predicted(
 }
 
 /// The map near a point of a board of dots or tags.
-pub(crate) fn map_near(pairs: &[Pair], point: Vector2<f64>) -> Option<(Homography, f64)> {
+pub(crate) fn map_near(pairs: &[PointPair], point: Vector2<f64>) -> Option<(Homography, f64)> {
     homography::map_near(pairs.iter().copied(), point, REACH)
 }
 
 /// Removes points of a board that contradict the prediction by the others, the worst first. `off` is the largest distance: pixels, and parts of the
 /// unit.
 pub(crate) fn prune<T>(
-    layout: &Layout,
+    layout: &BoardLayout,
     found: &mut BTreeMap<usize, T>,
     place: impl Fn(&T) -> Vector2<f64>,
     off: (f64, f64),
 ) {
     loop {
-        let pairs: Vec<Pair> = found.iter().map(|(id, it)| (layout.corner(*id), place(it), 1.0)).collect();
+        let pairs: Vec<PointPair> =
+            found.iter().map(|(id, it)| (layout.corner(*id), place(it), 1.0)).collect();
         let part = |(id, it): (&usize, &T)| {
             let point = layout.corner(*id);
             let part = map_near(&pairs, point).and_then(|(map, nearest)| {

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector2;
 
+use crate::detection::PointKind;
 use crate::dictionary::Dictionary;
-use crate::found::Kind;
-use crate::spec::{AprilGrid, Charuco, Circles, Spec, Tags};
+use crate::spec::{AprilGrid, BoardSpec, Charuco, Circles, Tags};
 
 /// Pattern of a board.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Pattern {
+pub enum BoardPattern {
     /// Squares, dark and light in turn.
     Squares,
     /// Dots at the inner corners of virtual squares.
@@ -20,12 +20,12 @@ pub enum Pattern {
         diameter: f64,
     },
     /// Tags in columns and rows.
-    Tags(Tagged),
+    Tags(TagGrid),
 }
 
 /// Tags in columns and rows, as drawn. The first one is a side of a tag from both borders of the board.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tagged {
+pub struct TagGrid {
     /// Tags along x.
     pub columns: usize,
     /// Tags along y.
@@ -40,7 +40,7 @@ pub struct Tagged {
     pub dictionary: Dictionary,
 }
 
-impl Tagged {
+impl TagGrid {
     /// The upper left corner of a tag, in sides of a tag from the corner of the board.
     #[must_use]
     pub fn first_corner(&self, tag: usize) -> Vector2<f64> {
@@ -70,8 +70,8 @@ const AROUND: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// A point of a board.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
-    /// Name, as of a [`Corner`](crate::Corner) in a picture.
+pub struct BoardPoint {
+    /// Name, as of a [`DetectedCorner`](crate::DetectedCorner) in a picture.
     pub name: String,
     /// Position on the board, metres.
     pub place_m: [f64; 2],
@@ -80,7 +80,7 @@ pub struct Point {
 /// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square. For a grid of dots a square has the
 /// side of its pitch, with dots at inner corners.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layout {
+pub struct BoardLayout {
     /// Squares along x and y.
     pub squares: [usize; 2],
     /// Side of a square, metres.
@@ -90,34 +90,48 @@ pub struct Layout {
     /// True if the first square is dark.
     pub first_dark: bool,
     /// Pattern of the board.
-    pub pattern: Pattern,
+    pub pattern: BoardPattern,
 }
 
-impl Layout {
+impl BoardLayout {
     /// The geometry of a board.
     #[must_use]
-    pub fn new(spec: &Spec) -> Self {
-        let (squares, square_m, pattern) = (spec.squares(), spec.square_m(), Pattern::Squares);
+    pub fn new(spec: &BoardSpec) -> Self {
+        let (squares, square_m, pattern) = (spec.squares(), spec.square_m(), BoardPattern::Squares);
         match spec {
-            Spec::Chessboard(_) => Layout { squares, square_m, markers: None, first_dark: true, pattern },
-            Spec::Circles(Circles { asymmetric, .. }) => {
-                let diameter = if *asymmetric { 0.8 } else { 0.5 };
-                let pattern = Pattern::Dots { asymmetric: *asymmetric, diameter };
-                Layout { squares, square_m, markers: None, first_dark: true, pattern }
+            BoardSpec::Chessboard(_) => {
+                BoardLayout { squares, square_m, markers: None, first_dark: true, pattern }
             }
-            Spec::Tags(Tags { dictionary, .. }) => {
+            BoardSpec::Circles(Circles { asymmetric, .. }) => {
+                let diameter = if *asymmetric { 0.8 } else { 0.5 };
+                let pattern = BoardPattern::Dots { asymmetric: *asymmetric, diameter };
+                BoardLayout { squares, square_m, markers: None, first_dark: true, pattern }
+            }
+            BoardSpec::Tags(Tags { dictionary, .. }) => {
                 let (columns, rows, gap, border) = (5, 3, 0.75, 1);
                 let pattern =
-                    Tagged { columns, rows, gap, border, kalibr: false, dictionary: dictionary.clone() };
-                Layout { squares, square_m, markers: None, first_dark: true, pattern: Pattern::Tags(pattern) }
+                    TagGrid { columns, rows, gap, border, kalibr: false, dictionary: dictionary.clone() };
+                BoardLayout {
+                    squares,
+                    square_m,
+                    markers: None,
+                    first_dark: true,
+                    pattern: BoardPattern::Tags(pattern),
+                }
             }
-            Spec::AprilGrid(AprilGrid { columns, rows, spacing, dictionary, .. }) => {
+            BoardSpec::AprilGrid(AprilGrid { columns, rows, spacing, dictionary, .. }) => {
                 let (columns, rows, gap, border) = (*columns, *rows, *spacing, 2);
                 let pattern =
-                    Tagged { columns, rows, gap, border, kalibr: true, dictionary: dictionary.clone() };
-                Layout { squares, square_m, markers: None, first_dark: true, pattern: Pattern::Tags(pattern) }
+                    TagGrid { columns, rows, gap, border, kalibr: true, dictionary: dictionary.clone() };
+                BoardLayout {
+                    squares,
+                    square_m,
+                    markers: None,
+                    first_dark: true,
+                    pattern: BoardPattern::Tags(pattern),
+                }
             }
-            Spec::Charuco(Charuco { marker_m, dictionary, legacy, rows, .. }) => Layout {
+            BoardSpec::Charuco(Charuco { marker_m, dictionary, legacy, rows, .. }) => BoardLayout {
                 squares,
                 square_m,
                 markers: Some((dictionary.clone(), marker_m / square_m)),
@@ -136,28 +150,28 @@ impl Layout {
 
     /// Inner corners along x and y.
     #[must_use]
-    pub fn inner(&self) -> [usize; 2] {
+    pub fn inner_corners(&self) -> [usize; 2] {
         self.squares.map(|it| it.saturating_sub(1))
     }
 
     /// Number of inner corners, of dots, or of corners of tags.
     #[must_use]
     pub fn corners(&self) -> usize {
-        if let Pattern::Tags(tags) = &self.pattern {
+        if let BoardPattern::Tags(tags) = &self.pattern {
             return 4 * tags.columns * tags.rows;
         }
-        let [columns, rows] = self.inner();
+        let [columns, rows] = self.inner_corners();
         if self.is_asymmetric() { columns / 2 * rows } else { columns * rows }
     }
 
     /// Position of an inner corner, of a dot, or of the corner of a tag, squares.
     #[must_use]
     pub fn corner(&self, id: usize) -> Vector2<f64> {
-        if let Pattern::Tags(tags) = &self.pattern {
+        if let BoardPattern::Tags(tags) = &self.pattern {
             let [x, y] = AROUND[id % 4];
             return tags.first_corner(id / 4) + Vector2::new(x, y);
         }
-        let columns = self.inner()[0].max(1);
+        let columns = self.inner_corners()[0].max(1);
         if self.is_asymmetric() {
             let columns = (columns / 2).max(1);
             let (column, row) = (id % columns, id / columns);
@@ -170,36 +184,40 @@ impl Layout {
     /// boards and OpenCV's. For Kalibr's grid of tags x is to the right and y upwards from the lower left corner of tag 0. Loose tags have no common
     /// frame: the corners of each are relative to its own middle, with y upwards.
     #[must_use]
-    pub fn points(&self) -> Vec<Point> {
-        let point = |kind: Kind, id: usize, place: Vector2<f64>| Point {
+    pub fn points(&self) -> Vec<BoardPoint> {
+        let point = |kind: PointKind, id: usize, place: Vector2<f64>| BoardPoint {
             name: kind.name(id),
             place_m: (place * self.square_m).into(),
         };
         let first = Vector2::new(1.0, 1.0);
         let all = 0..self.corners();
         match &self.pattern {
-            Pattern::Squares => all.map(|id| point(Kind::Corner, id, self.corner(id) - first)).collect(),
-            Pattern::Dots { .. } => all.map(|id| point(Kind::Dot, id, self.corner(id) - first)).collect(),
-            Pattern::Tags(tags) if tags.kalibr => {
+            BoardPattern::Squares => {
+                all.map(|id| point(PointKind::Corner, id, self.corner(id) - first)).collect()
+            }
+            BoardPattern::Dots { .. } => {
+                all.map(|id| point(PointKind::Dot, id, self.corner(id) - first)).collect()
+            }
+            BoardPattern::Tags(tags) if tags.kalibr => {
                 let origin = self.corner(3);
                 let off = |id: usize| self.corner(id) - origin;
-                all.map(|id| point(Kind::Tag, id, Vector2::new(off(id).x, -off(id).y))).collect()
+                all.map(|id| point(PointKind::Tag, id, Vector2::new(off(id).x, -off(id).y))).collect()
             }
-            Pattern::Tags(tags) => {
+            BoardPattern::Tags(tags) => {
                 let off = |id: usize| Vector2::new(AROUND[id % 4][0] - 0.5, 0.5 - AROUND[id % 4][1]);
-                (0..4 * tags.dictionary.len()).map(|id| point(Kind::Tag, id, off(id))).collect()
+                (0..4 * tags.dictionary.len()).map(|id| point(PointKind::Tag, id, off(id))).collect()
             }
         }
     }
 
     /// True if it has dots on every second corner.
     pub(crate) fn is_asymmetric(&self) -> bool {
-        matches!(self.pattern, Pattern::Dots { asymmetric: true, .. })
+        matches!(self.pattern, BoardPattern::Dots { asymmetric: true, .. })
     }
 
     /// The number of the dot at a column and row.
     pub(crate) fn dot_at(&self, [column, row]: [usize; 2]) -> Option<usize> {
-        let [columns, _] = self.inner();
+        let [columns, _] = self.inner_corners();
         if !self.is_asymmetric() {
             return Some(row * columns + column);
         }
@@ -209,15 +227,15 @@ impl Layout {
     /// Radius of dots, squares; 0 without dots.
     pub(crate) fn dot_radius(&self) -> f64 {
         match self.pattern {
-            Pattern::Squares | Pattern::Tags(_) => 0.0,
-            Pattern::Dots { diameter, .. } => 0.5 * diameter,
+            BoardPattern::Squares | BoardPattern::Tags(_) => 0.0,
+            BoardPattern::Dots { diameter, .. } => 0.5 * diameter,
         }
     }
 
     /// True if the square between a corner and the origin's side in both directions is dark.
     #[must_use]
     pub fn dark_before(&self, id: usize) -> bool {
-        let columns = self.inner()[0].max(1);
+        let columns = self.inner_corners()[0].max(1);
         self.is_dark(id % columns, id / columns)
     }
 
@@ -232,7 +250,7 @@ impl Layout {
     /// Number of markers.
     #[must_use]
     pub fn marker_count(&self) -> usize {
-        if let Pattern::Tags(tags) = &self.pattern {
+        if let BoardPattern::Tags(tags) = &self.pattern {
             return tags.columns * tags.rows;
         }
         let [columns, rows] = self.squares;
@@ -245,7 +263,7 @@ impl Layout {
     /// The corners of a marker, squares: clockwise in the picture of the board from its upper left one.
     #[must_use]
     pub fn marker_corners(&self, marker: usize) -> Option<[Vector2<f64>; 4]> {
-        if matches!(self.pattern, Pattern::Tags(_)) {
+        if matches!(self.pattern, BoardPattern::Tags(_)) {
             return Some([0, 1, 2, 3].map(|k| self.corner(4 * marker + k)));
         }
         let (_, side) = self.markers.as_ref()?;
@@ -256,7 +274,7 @@ impl Layout {
     }
 
     /// Distance from a corner within which its squares are plain, squares.
-    pub(crate) fn plain(&self) -> f64 {
+    pub(crate) fn plain_reach(&self) -> f64 {
         self.markers.as_ref().map_or(1.0, |(_, side)| (1.0 - side) / 2.0)
     }
 }

@@ -1,11 +1,11 @@
 //! Points of calibration boards in pictures: corners of chessboards, ChArUco boards, tags and grids of tags, and dots of circle grids, each with its
 //! name, its position and its standard deviation.
 //!
-//! A [`Spec`] describes the board, [`Picture::open`] reads a picture, and [`Detector::detect`] returns its corners or the reason why there are none.
+//! A [`BoardSpec`] describes the board, [`GrayPicture::open`] reads a picture, and [`Detector::detect`] returns its corners or the reason why there are none.
 //! Pixels are OpenCV's: the centre of the first pixel is (0, 0). Corners have the names of `poecal`'s `Board::chessboard`: `corner0`, `corner1`, …
 //! along x first, from the first inner corner; on a ChArUco board these are OpenCV's ids. Dots are `dot0`, `dot1`, … in OpenCV's order. Corners of
 //! tags are `tag12.0` to `tag12.3`: upper left, upper right, lower right and lower left of the printed tag. Upright is the orientation in a
-//! dictionary of OpenCV; Kalibr prints AprilTags upside down, and on its grid they are named as they stand there. [`Layout::points`] has the
+//! dictionary of OpenCV; Kalibr prints AprilTags upside down, and on its grid they are named as they stand there. [`BoardLayout::points`] has the
 //! positions on the board.
 //!
 //! A corner is never guessed: each is a crossing of two edges, with dark and light as on the board, and agrees with its neighbours. Hidden corners
@@ -19,13 +19,15 @@
 
 mod aprilgrid;
 mod bias;
+mod board_completeness;
 mod charuco;
 mod chessboard;
 mod circles;
+mod dark_regions;
+mod detection;
 mod detector;
 mod ellipse;
 mod error;
-mod found;
 mod gray;
 mod grid;
 mod growth;
@@ -34,9 +36,8 @@ mod lattice;
 mod layout;
 mod light;
 mod median;
-mod named;
 mod normal;
-mod parts;
+mod numbered_dots;
 mod picture;
 pub mod print;
 pub mod render;
@@ -45,20 +46,19 @@ mod spec;
 mod suggest;
 mod tags;
 mod vector;
-mod whole;
 
 use tags::{dictionary, markers, patch, quads, tagfit, tagmodel};
 
-use picture::{decoded, exif, preview};
+use picture::{decoding, exif, preview};
 
+pub use detection::{DetectedBoard, DetectedCorner, PointKind, RejectionReason};
 pub use detector::{Detector, MOST_DOTS};
 pub use error::{Error, Result};
-pub use found::{Corner, Found, Kind, Rejected};
 pub use gray::Gray;
-pub use layout::{Layout, Pattern, Point, Tagged};
-pub use picture::{MOST_PIXELS, Picture, Turned, Undecodable};
+pub use layout::{BoardLayout, BoardPattern, BoardPoint, TagGrid};
+pub use picture::{GrayPicture, MOST_PIXELS, PictureError, PictureOrientation};
 pub use preview::{png, preview};
-pub use spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
+pub use spec::{AprilGrid, BoardSpec, Charuco, Chessboard, Circles, Tags};
 pub use suggest::Suggestion;
 
 #[cfg(doctest)]

@@ -28,7 +28,7 @@ pub(crate) fn noise(gray: &Gray) -> f64 {
 }
 
 /// Appearance of a picture as a whole.
-pub(crate) struct Light {
+pub(crate) struct PictureLight {
     /// Level that one pixel in a hundred exceeds.
     pub(crate) lightest: f64,
     /// Part of the pixels that are white.
@@ -37,7 +37,7 @@ pub(crate) struct Light {
     pub(crate) edge_px: f64,
 }
 
-impl Light {
+impl PictureLight {
     pub(crate) fn new(gray: &Gray) -> Self {
         let mut counts = [0_usize; 256];
         let mut slopes: Vec<f32> = Vec::new();
@@ -68,6 +68,6 @@ impl Light {
         } else {
             f64::from(*slopes.select_nth_unstable_by(at, f32::total_cmp).1)
         };
-        Light { lightest, white, edge_px: (lightest - darkest) / steepest.max(0.1) }
+        PictureLight { lightest, white, edge_px: (lightest - darkest) / steepest.max(0.1) }
     }
 }

@@ -7,10 +7,10 @@ use nalgebra::{SMatrix, SVector, Vector2};
 /// Pixels side by side.
 pub(crate) const LANES: usize = 16;
 /// A number for each of them.
-pub(crate) type Lanes = [f32; LANES];
+pub(crate) type LaneArray = [f32; LANES];
 /// Numbers side by side from an index on.
 #[inline(always)]
-pub(crate) fn lanes(all: &[f32], at: usize) -> &Lanes {
+pub(crate) fn lanes(all: &[f32], at: usize) -> &LaneArray {
     all.get(at..).and_then(<[f32]>::first_chunk).unwrap_or(&[0.0; LANES])
 }
 
@@ -21,7 +21,7 @@ const MANY: usize = 64;
 pub(crate) struct Pixels {
     pub(crate) origin: Vector2<f64>,
     /// Columns, rows and levels.
-    all: Vec<[Lanes; 3]>,
+    all: Vec<[LaneArray; 3]>,
     count: usize,
 }
 
@@ -48,12 +48,12 @@ impl Pixels {
 
     /// Columns, rows and levels of pixels side by side, and their number.
     #[inline(always)]
-    pub(crate) fn chunks(&self) -> impl Iterator<Item = (&[Lanes; 3], usize)> {
+    pub(crate) fn chunks(&self) -> impl Iterator<Item = (&[LaneArray; 3], usize)> {
         self.all.iter().enumerate().map(|(at, it)| (it, (self.count - at * LANES).min(LANES)))
     }
 
     /// Column, row and level of each pixel.
-    pub(crate) fn each(&self) -> impl Iterator<Item = [f32; 3]> {
+    pub(crate) fn iter_pixels(&self) -> impl Iterator<Item = [f32; 3]> {
         (0..self.count).map(|at| self.all[at / LANES].map(|it| it[at % LANES]))
     }
 
@@ -64,29 +64,29 @@ impl Pixels {
 }
 
 /// The normal equations of rows.
-pub(crate) struct Normal<const N: usize> {
+pub(crate) struct PixelEquations<const N: usize> {
     /// Products below the diagonal.
-    products: [[Lanes; N]; N],
-    right: [Lanes; N],
-    squares: Lanes,
+    products: [[LaneArray; N]; N],
+    right: [LaneArray; N],
+    squares: LaneArray,
     waiting: usize,
     whole: (SMatrix<f64, N, N>, SVector<f64, N>, f64),
 }
 
 #[inline(always)]
-fn add(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+fn add(sum: &mut LaneArray, a: &LaneArray, b: &LaneArray) {
     for k in 0..LANES {
         sum[k] += a[k] * b[k];
     }
 }
 
-fn total(lanes: &Lanes) -> f64 {
+fn total(lanes: &LaneArray) -> f64 {
     lanes.iter().map(|it| f64::from(*it)).sum()
 }
 
-impl<const N: usize> Normal<N> {
+impl<const N: usize> PixelEquations<N> {
     pub(crate) fn new() -> Self {
-        Normal {
+        PixelEquations {
             products: [[[0.0; LANES]; N]; N],
             right: [[0.0; LANES]; N],
             squares: [0.0; LANES],
@@ -97,7 +97,7 @@ impl<const N: usize> Normal<N> {
 
     /// Adds the first `count` of rows side by side with their residuals.
     #[inline(always)]
-    pub(crate) fn add(&mut self, rows: &mut [Lanes; N], residuals: &mut Lanes, count: usize) {
+    pub(crate) fn add(&mut self, rows: &mut [LaneArray; N], residuals: &mut LaneArray, count: usize) {
         if count < LANES {
             rows.iter_mut().for_each(|row| row[count..].fill(0.0));
             residuals[count..].fill(0.0);
@@ -130,7 +130,7 @@ impl<const N: usize> Normal<N> {
     }
 
     /// The matrix, the right side, and the sum of the squares of the residuals.
-    pub(crate) fn finished(mut self) -> (SMatrix<f64, N, N>, SVector<f64, N>, f64) {
+    pub(crate) fn into_equations(mut self) -> (SMatrix<f64, N, N>, SVector<f64, N>, f64) {
         self.take();
         self.whole.0.fill_upper_triangle_with_lower_triangle();
         self.whole
@@ -173,14 +173,14 @@ mod tests {
         for count in [0, 1, 15, 16, 17, 40, 1100] {
             let mut pixels = Pixels::new(Vector2::zeros());
             (0..count).for_each(|k| pixels.push((k % 13) as f32, 1.0, (k % 7) as f32 - 2.5));
-            let mut found = Normal::<3>::new();
+            let mut found = PixelEquations::<3>::new();
             for ([xs, ys, levels], used) in pixels.chunks() {
                 found.add(&mut [*ys, *xs, xs.map(|it| it * it)], &mut levels.clone(), used);
             }
-            let (normal, right, squares) = found.finished();
+            let (normal, right, squares) = found.into_equations();
             let row =
                 |[x, y, level]: [f32; 3]| (SVector::from([y, x, x * x].map(f64::from)), f64::from(level));
-            let rows: Vec<_> = pixels.each().map(row).collect();
+            let rows: Vec<_> = pixels.iter_pixels().map(row).collect();
             let expected = rows.iter().fold(SMatrix::zeros(), |sum, it| sum + it.0 * it.0.transpose());
             // Integers and halves: without rounding.
             assert_eq!(normal, expected);

@@ -7,12 +7,12 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use crate::gray::Gray;
-use crate::normal::{LANES, Lanes, Normal, Pixels, sign_and_bell};
-use crate::vector::vectorized;
+use crate::normal::{LANES, LaneArray, PixelEquations, Pixels, sign_and_bell};
+use crate::vector::run_vectorized;
 
 /// Prediction of a corner.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Expected {
+pub(crate) struct SaddlePrior {
     /// Predicted position, pixels.
     pub(crate) place: Vector2<f64>,
     /// Derivative of the position by x and y of the board, pixels per square.
@@ -52,31 +52,31 @@ const WORST_PX: f64 = 0.4;
 
 /// Finds a corner near its predicted position. `None` if there is none: no two crossing edges, exchanged shades, another direction, too little
 /// contrast.
-pub(crate) fn refine(gray: &Gray, expected: &Expected, noise: f64) -> Option<Saddle> {
+pub(crate) fn refine(gray: &Gray, expected: &SaddlePrior, noise: f64) -> Option<Saddle> {
     let is_front = expected.slope.determinant() > 0.0;
     if !is_front {
         return None;
     }
     let place = search(gray, expected)?;
-    let window = Window::new(expected, LARGEST_PX)?;
+    let window = CornerWindow::new(expected, LARGEST_PX)?;
     let whole = fit(gray, expected, place, &window, noise);
     if whole.is_some() {
         return whole;
     }
     // Another feature may be near.
-    let smaller = Window::new(expected, LARGEST_PX * 0.45)?;
+    let smaller = CornerWindow::new(expected, LARGEST_PX * 0.45)?;
     fit(gray, expected, place, &smaller, noise)
 }
 
 /// A parallelogram around a corner in which its squares are plain.
-struct Window {
+struct CornerWindow {
     /// Map from pixels to the parallelogram, whose sides are at ±1.
     inverse: Matrix2<f64>,
     sides: Matrix2<f64>,
 }
 
-impl Window {
-    fn new(expected: &Expected, largest_px: f64) -> Option<Self> {
+impl CornerWindow {
+    fn new(expected: &SaddlePrior, largest_px: f64) -> Option<Self> {
         let area = expected.slope.determinant();
         let mut sides = expected.slope;
         for k in 0..2 {
@@ -90,7 +90,7 @@ impl Window {
             }
             sides.column_mut(k).scale_mut(reach);
         }
-        Some(Window { inverse: sides.try_inverse()?, sides })
+        Some(CornerWindow { inverse: sides.try_inverse()?, sides })
     }
 
     fn pixels(&self, gray: &Gray, middle: Vector2<f64>) -> Pixels {
@@ -119,14 +119,14 @@ impl Window {
 const BLURRED_PX: f64 = 1.2;
 
 /// The position with the most contrast between the two pairs of squares.
-fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
-    let window = Window::new(expected, LARGEST_PX)?;
+fn search(gray: &Gray, expected: &SaddlePrior) -> Option<Vector2<f64>> {
+    let window = CornerWindow::new(expected, LARGEST_PX)?;
     const AT: [[f64; 2]; 4] = [[0.3, 0.3], [0.7, 0.7], [0.25, 0.65], [0.65, 0.25]];
     let quarter = |place: Vector2<f64>, x: f64, y: f64| {
         let sum: f64 = AT
             .iter()
             .map(|[a, b]| {
-                gray.at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y))
+                gray.level_at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y))
             })
             .sum();
         sum / AT.len() as f64
@@ -159,7 +159,7 @@ fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
 }
 
 const UNKNOWNS: usize = 9;
-type Unknowns = SVector<f64, UNKNOWNS>;
+type SaddleUnknowns = SVector<f64, UNKNOWNS>;
 
 /// Crossing lines: position, directions, blur, levels, gradient of the light.
 #[derive(Clone)]
@@ -175,16 +175,16 @@ struct Crossing {
 }
 
 /// Sums over pixels.
-struct Sums {
+struct PixelSums {
     normal: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
-    right: Unknowns,
+    right: SaddleUnknowns,
     squares: f64,
 }
 
 impl Crossing {
-    fn start(expected: &Expected, place: Vector2<f64>, pixels: &Pixels) -> Self {
+    fn start(expected: &SaddlePrior, place: Vector2<f64>, pixels: &Pixels) -> Self {
         let count = pixels.len().max(1) as f64;
-        let levels = || pixels.each().map(|it| f64::from(it[2]));
+        let levels = || pixels.iter_pixels().map(|it| f64::from(it[2]));
         let mean = levels().sum::<f64>() / count;
         let spread = (levels().map(|it| (it - mean).powi(2)).sum::<f64>() / count).sqrt();
         let turn = |k: usize| expected.slope[(1, k)].atan2(expected.slope[(0, k)]);
@@ -192,29 +192,29 @@ impl Crossing {
         Crossing { place, turns: [turn(0), turn(1)], blur: 1.3, mean, half, light: Vector2::zeros() }
     }
 
-    fn sums(&self, pixels: &Pixels, middle: Vector2<f64>) -> Sums {
-        let (normal, right, squares) = vectorized(
+    fn sums(&self, pixels: &Pixels, middle: Vector2<f64>) -> PixelSums {
+        let (normal, right, squares) = run_vectorized(
             #[inline(always)]
             || {
-                let near = Near::new(self, pixels, middle);
-                let mut sums = Normal::<UNKNOWNS>::new();
+                let near = OriginCrossing::new(self, pixels, middle);
+                let mut sums = PixelEquations::<UNKNOWNS>::new();
                 for (pixels, count) in pixels.chunks() {
                     let (mut rows, mut residuals) = near.rows(pixels);
                     sums.add(&mut rows, &mut residuals, count);
                 }
-                sums.finished()
+                sums.into_equations()
             },
         );
-        Sums { normal, right, squares }
+        PixelSums { normal, right, squares }
     }
 
     /// Number of pixels with a common error, as in sharpened and compressed pictures: 1 plus twice the correlations of the residuals with those of
     /// the next pixels and those after them, in four directions.
-    fn alike(&self, pixels: &Pixels, middle: Vector2<f64>) -> f64 {
-        let near = Near::new(self, pixels, middle);
+    fn correlated_pixels(&self, pixels: &Pixels, middle: Vector2<f64>) -> f64 {
+        let near = OriginCrossing::new(self, pixels, middle);
         let left: Vec<f32> = pixels.chunks().flat_map(|it| near.rows(it.0).1).collect();
         let ends = |k: usize| {
-            let places = || pixels.each().map(|it| it[k]);
+            let places = || pixels.iter_pixels().map(|it| it[k]);
             [places().fold(f32::INFINITY, f32::min), places().fold(f32::NEG_INFINITY, f32::max)]
         };
         let ([left_px, right_px], [top_px, bottom_px]) = (ends(0), ends(1));
@@ -222,13 +222,13 @@ impl Crossing {
         let width = (right_px - left_px) as usize + 1 + 2;
         let size = (width * ((bottom_px - top_px) as usize + 1)).next_multiple_of(LANES);
         let mut all = vec![0.0_f32; size + 2 * width + 2];
-        for ([x, y, _], own) in pixels.each().zip(&left) {
+        for ([x, y, _], own) in pixels.iter_pixels().zip(&left) {
             all[(y - top_px) as usize * width + (x - left_px) as usize] = *own;
         }
         // Those that follow in the row, and those in the next two.
         let beside = [1, 2].into_iter().chain([width, 2 * width].into_iter().flat_map(|it| it - 2..=it + 2));
         let product = |off: usize| {
-            let mut sums: Lanes = [0.0; LANES];
+            let mut sums: LaneArray = [0.0; LANES];
             let (own, other) = (all.as_chunks::<LANES>().0, all[off..].as_chunks::<LANES>().0);
             for (own, other) in own.iter().zip(other).take(size / LANES) {
                 for k in 0..LANES {
@@ -241,7 +241,7 @@ impl Crossing {
         1.0 + (2.0 * products / squares.max(1e-12)).max(0.0)
     }
 
-    fn stepped(&self, step: &Unknowns) -> Self {
+    fn step_by(&self, step: &SaddleUnknowns) -> Self {
         // Beyond a pixel and a third of a radian the derivatives are not valid.
         let long = (step[0].hypot(step[1]) / 1.5).max(step[2].abs().max(step[3].abs()) / 0.35).max(1.0);
         let step = step / long;
@@ -257,7 +257,7 @@ impl Crossing {
 }
 
 /// A crossing near the origin of pixels.
-struct Near {
+struct OriginCrossing {
     place: [f32; 2],
     middle: [f32; 2],
     sines: [f32; 2],
@@ -270,10 +270,10 @@ struct Near {
     light: [f32; 2],
 }
 
-impl Near {
+impl OriginCrossing {
     fn new(crossing: &Crossing, pixels: &Pixels, middle: Vector2<f64>) -> Self {
         let [(s1, c1), (s2, c2)] = crossing.turns.map(f64::sin_cos);
-        Near {
+        OriginCrossing {
             place: pixels.offset(crossing.place),
             middle: pixels.offset(middle),
             sines: [s1 as f32, s2 as f32],
@@ -288,7 +288,7 @@ impl Near {
 
     /// Derivatives of the levels of pixels by the unknowns, and the residuals.
     #[inline(always)]
-    fn rows(&self, [xs, ys, levels]: &[Lanes; 3]) -> ([Lanes; UNKNOWNS], Lanes) {
+    fn rows(&self, [xs, ys, levels]: &[LaneArray; 3]) -> ([LaneArray; UNKNOWNS], LaneArray) {
         const ROOT: f32 = 0.797_884_6;
         let (mut rows, mut left) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
         let ([s1, s2], [c1, c2], rho, scale) = (self.sines, self.cosines, self.rho, 1.0 / self.blur);
@@ -329,7 +329,13 @@ fn skew(rho: f32, h: f32, k: f32) -> f32 {
 }
 
 /// Fits crossing lines in a window about a position.
-fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, noise: f64) -> Option<Saddle> {
+fn fit(
+    gray: &Gray,
+    expected: &SaddlePrior,
+    place: Vector2<f64>,
+    window: &CornerWindow,
+    noise: f64,
+) -> Option<Saddle> {
     let mut middle = place;
     let mut pixels = window.pixels(gray, middle);
     if pixels.len() < 2 * UNKNOWNS {
@@ -337,7 +343,7 @@ fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, n
     }
     let mut crossing = Crossing::start(expected, place, &pixels);
     for round in 0..2 {
-        crossing = descended(crossing, &pixels, middle, if round == 0 { 8 } else { 12 })?;
+        crossing = descend_crossing(crossing, &pixels, middle, if round == 0 { 8 } else { 12 })?;
         if (crossing.place - expected.place).norm() > expected.search_px + 2.0 {
             return None;
         }
@@ -351,7 +357,8 @@ fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, n
     }
     let sums = crossing.sums(&pixels, middle);
     let variance = sums.squares / (pixels.len() - UNKNOWNS) as f64;
-    let covariance = sums.normal.cholesky()?.inverse() * (variance * crossing.alike(&pixels, middle));
+    let covariance =
+        sums.normal.cholesky()?.inverse() * (variance * crossing.correlated_pixels(&pixels, middle));
     let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
     let half = if expected.dark_before { -crossing.half } else { crossing.half };
     let start = Crossing::start(expected, place, &pixels);
@@ -369,7 +376,7 @@ fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, n
 }
 
 /// Levenberg-Marquardt from a start.
-fn descended(
+fn descend_crossing(
     mut crossing: Crossing,
     pixels: &Pixels,
     middle: Vector2<f64>,
@@ -383,7 +390,7 @@ fn descended(
             damped[(k, k)] = damped[(k, k)] * (1.0 + damping) + 1e-12;
         }
         let step = damped.cholesky()?.solve(&sums.right);
-        let next = crossing.stepped(&step);
+        let next = crossing.step_by(&step);
         let found = next.sums(pixels, middle);
         let moved = (next.place - crossing.place).norm();
         if found.squares <= sums.squares {

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 /// in).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Spec {
+pub enum BoardSpec {
     /// A plain chessboard.
     Chessboard(Chessboard),
     /// A chessboard with markers in its light squares.
@@ -98,19 +98,19 @@ const TAGS: &str = "tags:FAMILY:SIZE, such as tags:36h11:50mm";
 const APRILGRID: &str = "aprilgrid:COLSxROWS:SIZE:SPACING, such as aprilgrid:6x6:88mm:0.3";
 const CHARUCO: &str = "charuco:COLSxROWS:SQUARE:MARKER:DICT, such as charuco:5x7:36mm:18mm:DICT_6X6_250";
 
-impl Spec {
+impl BoardSpec {
     /// Squares along x and y. For a grid of dots those that have its dots at their inner corners; for tags the extent of the drawn ones, in sides of
     /// a tag.
     #[must_use]
     pub fn squares(&self) -> [usize; 2] {
         match self {
-            Spec::Chessboard(board) => [board.columns, board.rows],
-            Spec::Charuco(board) => [board.columns, board.rows],
-            Spec::Circles(Circles { columns, rows, asymmetric, .. }) => {
+            BoardSpec::Chessboard(board) => [board.columns, board.rows],
+            BoardSpec::Charuco(board) => [board.columns, board.rows],
+            BoardSpec::Circles(Circles { columns, rows, asymmetric, .. }) => {
                 [columns * (1 + usize::from(*asymmetric)) + 1, rows + 1]
             }
-            Spec::Tags(_) => [10, 7],
-            Spec::AprilGrid(AprilGrid { columns, rows, spacing, .. }) => [columns, rows]
+            BoardSpec::Tags(_) => [10, 7],
+            BoardSpec::AprilGrid(AprilGrid { columns, rows, spacing, .. }) => [columns, rows]
                 .map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing + 2.0).ceil() as usize),
         }
     }
@@ -119,11 +119,11 @@ impl Spec {
     #[must_use]
     pub fn square_m(&self) -> f64 {
         match self {
-            Spec::Chessboard(board) => board.square_m,
-            Spec::Charuco(board) => board.square_m,
-            Spec::Circles(board) => board.pitch_m,
-            Spec::Tags(board) => board.size_m,
-            Spec::AprilGrid(board) => board.size_m,
+            BoardSpec::Chessboard(board) => board.square_m,
+            BoardSpec::Charuco(board) => board.square_m,
+            BoardSpec::Circles(board) => board.pitch_m,
+            BoardSpec::Tags(board) => board.size_m,
+            BoardSpec::AprilGrid(board) => board.size_m,
         }
     }
 
@@ -132,33 +132,35 @@ impl Spec {
     #[must_use]
     pub fn ruled_m(&self) -> [f64; 2] {
         match self {
-            Spec::Chessboard(_) | Spec::Charuco(_) => self.squares().map(|it| it as f64 * self.square_m()),
-            Spec::Circles(board) => self.squares().map(|it| it.saturating_sub(2) as f64 * board.pitch_m),
-            Spec::Tags(board) => [board.size_m; 2],
-            Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
+            BoardSpec::Chessboard(_) | BoardSpec::Charuco(_) => {
+                self.squares().map(|it| it as f64 * self.square_m())
+            }
+            BoardSpec::Circles(board) => self.squares().map(|it| it.saturating_sub(2) as f64 * board.pitch_m),
+            BoardSpec::Tags(board) => [board.size_m; 2],
+            BoardSpec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
                 [columns, rows].map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing) * size_m)
             }
         }
     }
 
     /// The board scaled by this factor, with squares and markers to a micrometre.
-    pub(crate) fn scaled(&self, factor: f64) -> Self {
+    pub(crate) fn scale(&self, factor: f64) -> Self {
         let scaled = |length_m: f64| (length_m * factor * 1e6).round() / 1e6;
         let mut board = self.clone();
         match &mut board {
-            Spec::Chessboard(board) => board.square_m = scaled(board.square_m),
-            Spec::Charuco(board) => {
+            BoardSpec::Chessboard(board) => board.square_m = scaled(board.square_m),
+            BoardSpec::Charuco(board) => {
                 (board.square_m, board.marker_m) = (scaled(board.square_m), scaled(board.marker_m));
             }
-            Spec::Circles(board) => board.pitch_m = scaled(board.pitch_m),
-            Spec::Tags(board) => board.size_m = scaled(board.size_m),
-            Spec::AprilGrid(board) => board.size_m = scaled(board.size_m),
+            BoardSpec::Circles(board) => board.pitch_m = scaled(board.pitch_m),
+            BoardSpec::Tags(board) => board.size_m = scaled(board.size_m),
+            BoardSpec::AprilGrid(board) => board.size_m = scaled(board.size_m),
         }
         board
     }
 }
 
-impl FromStr for Spec {
+impl FromStr for BoardSpec {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
@@ -166,43 +168,45 @@ impl FromStr for Spec {
         match parts.as_slice() {
             ["chessboard", size, square] => {
                 let [columns, rows] = size_of("squares", size, 3)?;
-                Ok(Spec::Chessboard(Chessboard {
+                Ok(BoardSpec::Chessboard(Chessboard {
                     columns,
                     rows,
                     square_m: length_m("side of a square", square)?,
                 }))
             }
-            ["chessboard", ..] => Err(wrong(text, CHESSBOARD)),
+            ["chessboard", ..] => Err(spec_error(text, CHESSBOARD)),
             ["circles", size, pitch] => circles(size, pitch, false),
             ["circles", size, pitch, "asymmetric"] => circles(size, pitch, true),
             ["circles", _, _, last] => Err(Error::new(format!(
                 "found {last:?} at the end of a board, expected asymmetric or nothing"
             ))),
-            ["circles", ..] => Err(wrong(text, CIRCLES)),
+            ["circles", ..] => Err(spec_error(text, CIRCLES)),
             ["tags", family, size] => {
-                let dictionary = Dictionary::named(family)?;
-                Ok(Spec::Tags(Tags { dictionary, size_m: length_m("side of a tag", size)? }))
+                let dictionary = Dictionary::from_name(family)?;
+                Ok(BoardSpec::Tags(Tags { dictionary, size_m: length_m("side of a tag", size)? }))
             }
-            ["tags", ..] => Err(wrong(text, TAGS)),
+            ["tags", ..] => Err(spec_error(text, TAGS)),
             ["aprilgrid", size, tag, spacing] => aprilgrid(size, tag, spacing, "DICT_APRILTAG_36h11"),
             ["aprilgrid", size, tag, spacing, family] => aprilgrid(size, tag, spacing, family),
-            ["aprilgrid", ..] => Err(wrong(text, APRILGRID)),
+            ["aprilgrid", ..] => Err(spec_error(text, APRILGRID)),
             ["charuco", size, square, marker, name] => charuco(size, [square, marker], name, false),
             ["charuco", size, square, marker, name, "legacy"] => charuco(size, [square, marker], name, true),
             ["charuco", _, _, _, _, last] => {
                 Err(Error::new(format!("found {last:?} at the end of a board, expected legacy or nothing")))
             }
-            ["charuco", ..] => Err(wrong(text, CHARUCO)),
-            _ => Err(wrong(text, &format!("{CHESSBOARD}, {CHARUCO}, {CIRCLES}, {TAGS}, or {APRILGRID}"))),
+            ["charuco", ..] => Err(spec_error(text, CHARUCO)),
+            _ => {
+                Err(spec_error(text, &format!("{CHESSBOARD}, {CHARUCO}, {CIRCLES}, {TAGS}, or {APRILGRID}")))
+            }
         }
     }
 }
 
-fn wrong(text: &str, expected: &str) -> Error {
+fn spec_error(text: &str, expected: &str) -> Error {
     Error::new(format!("found the board {text:?}, expected {expected}"))
 }
 
-fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) -> Result<Spec> {
+fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) -> Result<BoardSpec> {
     let [columns, rows] = size_of("squares", size, 3)?;
     let (square_m, marker_m) = (length_m("side of a square", square)?, length_m("side of a marker", marker)?);
     if marker_m >= square_m {
@@ -210,7 +214,7 @@ fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) ->
             format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
         return Err(Error::new(message));
     }
-    let dictionary = Dictionary::named(name)?;
+    let dictionary = Dictionary::from_name(name)?;
     let (needed, most) = (columns * rows / 2, dictionary.len());
     if needed > most {
         let message = format!(
@@ -219,15 +223,15 @@ fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) ->
         );
         return Err(Error::new(message));
     }
-    Ok(Spec::Charuco(Charuco { columns, rows, square_m, marker_m, dictionary, legacy }))
+    Ok(BoardSpec::Charuco(Charuco { columns, rows, square_m, marker_m, dictionary, legacy }))
 }
 
-fn circles(size: &str, pitch: &str, asymmetric: bool) -> Result<Spec> {
+fn circles(size: &str, pitch: &str, asymmetric: bool) -> Result<BoardSpec> {
     let [columns, rows] = size_of("dots", size, if asymmetric { 2 } else { 3 })?;
-    Ok(Spec::Circles(Circles { columns, rows, pitch_m: length_m("pitch", pitch)?, asymmetric }))
+    Ok(BoardSpec::Circles(Circles { columns, rows, pitch_m: length_m("pitch", pitch)?, asymmetric }))
 }
 
-fn aprilgrid(size: &str, tag: &str, spacing: &str, family: &str) -> Result<Spec> {
+fn aprilgrid(size: &str, tag: &str, spacing: &str, family: &str) -> Result<BoardSpec> {
     let [columns, rows] = size_of("tags", size, 1)?;
     let size_m = length_m("side of a tag", tag)?;
     let part = spacing.parse().ok().filter(|it| (0.05..=1.0).contains(it)).ok_or_else(|| {
@@ -235,7 +239,7 @@ fn aprilgrid(size: &str, tag: &str, spacing: &str, family: &str) -> Result<Spec>
             "found {spacing:?} for the spacing of tags, expected a part of their side from 0.05 to 1, such as 0.3"
         ))
     })?;
-    let dictionary = Dictionary::named(family)?;
+    let dictionary = Dictionary::from_name(family)?;
     if columns * rows > dictionary.len() {
         return Err(Error::new(format!(
             "found a board of {columns}x{rows} tags, expected one with at most the {} of {}",
@@ -243,7 +247,7 @@ fn aprilgrid(size: &str, tag: &str, spacing: &str, family: &str) -> Result<Spec>
             dictionary.name()
         )));
     }
-    Ok(Spec::AprilGrid(AprilGrid { columns, rows, size_m, spacing: part, dictionary }))
+    Ok(BoardSpec::AprilGrid(AprilGrid { columns, rows, size_m, spacing: part, dictionary }))
 }
 
 fn size_of(what: &str, text: &str, least: usize) -> Result<[usize; 2]> {
@@ -275,21 +279,21 @@ pub(crate) fn length(text: &str) -> Option<f64> {
     Some(value * metres).filter(|it| *it > 0.0 && it.is_finite())
 }
 
-impl fmt::Display for Spec {
+impl fmt::Display for BoardSpec {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mm = |length_m: f64| (length_m * 1e9).round() / 1e6;
         match self {
-            Spec::Chessboard(Chessboard { columns, rows, square_m }) => {
+            BoardSpec::Chessboard(Chessboard { columns, rows, square_m }) => {
                 write!(formatter, "chessboard:{columns}x{rows}:{}mm", mm(*square_m))
             }
-            Spec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
+            BoardSpec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
                 let end = if *asymmetric { ":asymmetric" } else { "" };
                 write!(formatter, "circles:{columns}x{rows}:{}mm{end}", mm(*pitch_m))
             }
-            Spec::Tags(Tags { dictionary, size_m }) => {
+            BoardSpec::Tags(Tags { dictionary, size_m }) => {
                 write!(formatter, "tags:{}:{}mm", dictionary.name(), mm(*size_m))
             }
-            Spec::AprilGrid(board) => {
+            BoardSpec::AprilGrid(board) => {
                 let AprilGrid { columns, rows, size_m, spacing, dictionary } = board;
                 write!(
                     formatter,
@@ -298,7 +302,7 @@ impl fmt::Display for Spec {
                     dictionary.name()
                 )
             }
-            Spec::Charuco(board) => {
+            BoardSpec::Charuco(board) => {
                 let Charuco { columns, rows, square_m, marker_m, dictionary, legacy } = board;
                 let (square, marker, name) = (mm(*square_m), mm(*marker_m), dictionary.name());
                 write!(formatter, "charuco:{columns}x{rows}:{square}mm:{marker}mm:{name}")?;
@@ -323,11 +327,11 @@ mod tests {
             "tags:DICT_APRILTAG_36h11:50mm",
             "aprilgrid:6x6:88mm:0.3:DICT_APRILTAG_36h11",
         ] {
-            assert_eq!(text.parse::<Spec>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<BoardSpec>().unwrap().to_string(), text);
         }
-        assert_eq!("chessboard:10x7:2.8cm".parse::<Spec>().unwrap().to_string(), "chessboard:10x7:28mm");
-        assert_eq!("chessboard:10x7:1in".parse::<Spec>().unwrap().square_m(), 0.0254);
-        assert_eq!("charuco:5x7:36mm:18mm:6x6_250".parse::<Spec>().unwrap().squares(), [5, 7]);
+        assert_eq!("chessboard:10x7:2.8cm".parse::<BoardSpec>().unwrap().to_string(), "chessboard:10x7:28mm");
+        assert_eq!("chessboard:10x7:1in".parse::<BoardSpec>().unwrap().square_m(), 0.0254);
+        assert_eq!("charuco:5x7:36mm:18mm:6x6_250".parse::<BoardSpec>().unwrap().squares(), [5, 7]);
     }
 
     #[test]
@@ -352,7 +356,7 @@ mod tests {
             ("charuco:15x17:36mm:18mm:DICT_6X6_50", "at most the 50 markers"),
             ("charuco:5x7:36mm:18mm:DICT_6X6_250:old", "expected legacy"),
         ] {
-            let message = text.parse::<Spec>().unwrap_err().to_string();
+            let message = text.parse::<BoardSpec>().unwrap_err().to_string();
             assert!(message.contains(part) && message.starts_with("found"), "{text}: {message}");
         }
     }

@@ -2,22 +2,22 @@
 
 use std::fmt;
 
+use crate::detection::{DetectedBoard, RejectionReason};
 use crate::dictionary::Dictionary;
 use crate::ellipse::Dot;
-use crate::found::{Found, Rejected};
 use crate::gray::Gray;
-use crate::layout::Layout;
+use crate::layout::BoardLayout;
 use crate::light::noise;
-use crate::markers::Reader;
+use crate::markers::MarkerReader;
 use crate::quads::{Quad, quads, quads_apart};
-use crate::spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
+use crate::spec::{AprilGrid, BoardSpec, Charuco, Chessboard, Circles, Tags};
 use crate::{aprilgrid, charuco, chessboard, circles, tags};
 
 /// A board that pictures show instead of the stated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suggestion {
     /// The board.
-    pub spec: Spec,
+    pub spec: BoardSpec,
     /// Number of the pictures in which it was found.
     pub pictures: usize,
     /// Number of its corners there.
@@ -32,56 +32,61 @@ impl fmt::Display for Suggestion {
 }
 
 /// The board with the most corners, if any has some: of several the first that is tried.
-pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray], most_dots: usize) -> Option<Suggestion> {
+pub(crate) fn suggest(spec: &BoardSpec, pictures: &[&Gray], most_dots: usize) -> Option<Suggestion> {
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
     let all: Vec<Suggestion> = match spec {
-        Spec::Chessboard(board) => {
-            let seen = with(&seen, |_, _| ());
-            let detect =
-                |layout: &Layout, one: &Seen<'_, ()>| chessboard::detect(one.gray, layout, one.noise);
+        BoardSpec::Chessboard(board) => {
+            let seen = prepare_pictures(&seen, |_, _| ());
+            let detect = |layout: &BoardLayout, one: &AnalysedPicture<'_, ()>| {
+                chessboard::detect(one.gray, layout, one.noise)
+            };
             chessboards(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
-        Spec::Charuco(board) => charucos_in(board, &with(&seen, quads)),
-        Spec::Circles(board) => {
+        BoardSpec::Charuco(board) => charucos_in(board, &prepare_pictures(&seen, quads)),
+        BoardSpec::Circles(board) => {
             let dots = |gray: &Gray, noise: f64| circles::dots(gray, noise, most_dots).unwrap_or_default();
-            let seen = with(&seen, dots);
-            let detect = |layout: &Layout, one: &Seen<'_, Vec<Dot>>| {
+            let seen = prepare_pictures(&seen, dots);
+            let detect = |layout: &BoardLayout, one: &AnalysedPicture<'_, Vec<Dot>>| {
                 circles::of_dots(one.gray, layout, one.noise, &one.parts)
             };
             grids_of_dots(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
-        Spec::Tags(board) => tags_in(board, &with(&seen, quads)),
-        Spec::AprilGrid(board) => april_grids_in(board, &with(&seen, quads_apart)),
+        BoardSpec::Tags(board) => tags_in(board, &prepare_pictures(&seen, quads)),
+        BoardSpec::AprilGrid(board) => april_grids_in(board, &prepare_pictures(&seen, quads_apart)),
     };
     all.into_iter().filter(|it| it.corners > 0).rev().max_by_key(|it| it.corners)
 }
 
 /// A picture, its noise, and detections that are costly and do not depend on the board.
-struct Seen<'a, P> {
+struct AnalysedPicture<'a, P> {
     gray: &'a Gray,
     noise: f64,
     parts: P,
 }
 
-fn with<'a, P>(seen: &[(&'a Gray, f64)], parts: impl Fn(&Gray, f64) -> P) -> Vec<Seen<'a, P>> {
-    let one = |(gray, noise): &(&'a Gray, f64)| Seen { gray, noise: *noise, parts: parts(gray, *noise) };
+fn prepare_pictures<'a, P>(
+    seen: &[(&'a Gray, f64)],
+    parts: impl Fn(&Gray, f64) -> P,
+) -> Vec<AnalysedPicture<'a, P>> {
+    let one =
+        |(gray, noise): &(&'a Gray, f64)| AnalysedPicture { gray, noise: *noise, parts: parts(gray, *noise) };
     seen.iter().map(one).collect()
 }
 
-fn charucos_in(board: &Charuco, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+fn charucos_in(board: &Charuco, seen: &[AnalysedPicture<'_, Vec<Quad>>]) -> Vec<Suggestion> {
     let tried = |board: Charuco| {
-        let reader = Reader::new(&board.dictionary);
-        suggestion(Spec::Charuco(board), seen, |layout, one| {
+        let reader = MarkerReader::new(&board.dictionary);
+        suggestion(BoardSpec::Charuco(board), seen, |layout, one| {
             charuco::of_quads(one.gray, layout, &reader, one.noise, &one.parts)
         })
     };
     charucos(board).into_iter().map(tried).collect()
 }
 
-fn tags_in(board: &Tags, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+fn tags_in(board: &Tags, seen: &[AnalysedPicture<'_, Vec<Quad>>]) -> Vec<Suggestion> {
     let tried = |dictionary: Dictionary| {
-        let reader = Reader::new(&dictionary);
-        let spec = Spec::Tags(Tags { dictionary: dictionary.clone(), ..*board });
+        let reader = MarkerReader::new(&dictionary);
+        let spec = BoardSpec::Tags(Tags { dictionary: dictionary.clone(), ..*board });
         suggestion(spec, seen, |_, one| {
             tags::of_quads(one.gray, (&dictionary, &reader), one.noise, &one.parts)
         })
@@ -89,10 +94,10 @@ fn tags_in(board: &Tags, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
     families(&board.dictionary, 1).map(tried).collect()
 }
 
-fn april_grids_in(board: &AprilGrid, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Suggestion> {
+fn april_grids_in(board: &AprilGrid, seen: &[AnalysedPicture<'_, Vec<Quad>>]) -> Vec<Suggestion> {
     let tried = |board: AprilGrid| {
-        let reader = Reader::with_border(&board.dictionary, 2);
-        suggestion(Spec::AprilGrid(board), seen, |layout, one| {
+        let reader = MarkerReader::with_border(&board.dictionary, 2);
+        suggestion(BoardSpec::AprilGrid(board), seen, |layout, one| {
             aprilgrid::of_quads(one.gray, layout, (&reader, one.noise), &one.parts)
         })
     };
@@ -101,26 +106,26 @@ fn april_grids_in(board: &AprilGrid, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Sugges
 
 /// Detections of a board in pictures.
 fn suggestion<P>(
-    spec: Spec,
-    seen: &[Seen<'_, P>],
-    detect: impl Fn(&Layout, &Seen<'_, P>) -> Result<Found, Rejected>,
+    spec: BoardSpec,
+    seen: &[AnalysedPicture<'_, P>],
+    detect: impl Fn(&BoardLayout, &AnalysedPicture<'_, P>) -> Result<DetectedBoard, RejectionReason>,
 ) -> Suggestion {
-    let layout = Layout::new(&spec);
+    let layout = BoardLayout::new(&spec);
     let found = seen.iter().filter_map(|one| detect(&layout, one).ok());
     let (pictures, corners) = found.fold((0, 0), |sum, it| (sum.0 + 1, sum.1 + it.corners.len()));
     Suggestion { spec, pictures, corners }
 }
 
 /// Corners counted instead of squares, or the reverse.
-fn chessboards(board: &Chessboard) -> Vec<Spec> {
+fn chessboards(board: &Chessboard) -> Vec<BoardSpec> {
     let Chessboard { columns, rows, square_m } = *board;
     let others = [(columns + 1, rows + 1), (columns - 1, rows - 1)];
     let sound = others.into_iter().filter(|(columns, rows)| *columns >= 3 && *rows >= 3);
-    sound.map(|(columns, rows)| Spec::Chessboard(Chessboard { columns, rows, square_m })).collect()
+    sound.map(|(columns, rows)| BoardSpec::Chessboard(Chessboard { columns, rows, square_m })).collect()
 }
 
 /// Rows and columns exchanged, the other kind, and dots counted as the squares between them, or the reverse.
-fn grids_of_dots(board: &Circles) -> Vec<Spec> {
+fn grids_of_dots(board: &Circles) -> Vec<BoardSpec> {
     let Circles { columns, rows, pitch_m, asymmetric } = *board;
     let counts = [(columns, rows), (rows, columns), (columns + 1, rows + 1), (columns - 1, rows - 1)];
     let kinds = counts.into_iter().flat_map(|count| [(count, asymmetric), (count, !asymmetric)]);
@@ -129,12 +134,12 @@ fn grids_of_dots(board: &Circles) -> Vec<Spec> {
         (*columns).min(*rows) >= least
     });
     let circles = |((columns, rows), asymmetric)| Circles { columns, rows, pitch_m, asymmetric };
-    sound.map(circles).filter(|it| it != board).map(Spec::Circles).collect()
+    sound.map(circles).filter(|it| it != board).map(BoardSpec::Circles).collect()
 }
 
 /// The other dictionaries with enough markers.
 fn families(own: &Dictionary, markers: usize) -> impl Iterator<Item = Dictionary> {
-    Dictionary::smallest(markers).into_iter().filter(move |it| !it.is_alike(own))
+    Dictionary::smallest_with(markers).into_iter().filter(move |it| !it.is_alike(own))
 }
 
 fn april_grids(board: &AprilGrid) -> Vec<AprilGrid> {

@@ -2,9 +2,9 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-struct Work<F>(F);
+struct VectorWork<F>(F);
 
-impl<F: FnOnce() -> T, T> WithSimd for Work<F> {
+impl<F: FnOnce() -> T, T> WithSimd for VectorWork<F> {
     type Output = T;
 
     #[inline(always)]
@@ -15,8 +15,8 @@ impl<F: FnOnce() -> T, T> WithSimd for Work<F> {
 
 /// Runs the code inlined into a closure, which has to be `#[inline(always)]` itself, with the vector instructions of the machine.
 #[inline(always)]
-pub(crate) fn vectorized<T>(work: impl FnOnce() -> T) -> T {
-    Arch::new().dispatch(Work(work))
+pub(crate) fn run_vectorized<T>(work: impl FnOnce() -> T) -> T {
+    Arch::new().dispatch(VectorWork(work))
 }
 
 /// Changes each number by those at the same index in other slices, up to the shortest of them. With iterators the compiler leaves calls.

@@ -16,12 +16,12 @@ const TARGET_WEIGHT: f64 = 1e-3;
 const NULL: f64 = 1e-13;
 
 /// The base motion that brings an estimate's screws nearest to the nominal robot's, rotations counted with `length_m`; apply it
-/// with [`Estimate::rebased`]. `nominal_targets` decide directions that the screws leave undetermined: theory.md §8 (38).
+/// with [`Estimate::rebase`]. `nominal_targets` decide directions that the screws leave undetermined: theory.md §8 (38).
 #[must_use]
 pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose], length_m: f64) -> Pose {
     let mut motion = Pose::identity();
     for _ in 0..50 {
-        let moved = estimate.rebased(&motion);
+        let moved = estimate.rebase(&motion);
         let mut gram = Matrix6::zeros();
         let mut gradient = Vector6::zeros();
         let mut add = |derivative: Matrix3x6<f64>, residual: Vector3<f64>| {
@@ -159,7 +159,7 @@ pub fn screw_motions(estimate: &Estimate, layout: &Layout) -> Vec<Vec<Vector6<f6
 
 /// Deviation of a screw from nominal, with its derivatives by the unknowns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Deviation {
+pub struct ScrewDeviation {
     /// Angle between the directions, radians.
     pub tilt_rad: f64,
     /// Distance of the axis from the nominal joint's origin, metres; zero for a prismatic joint.
@@ -178,7 +178,7 @@ pub fn screw_deviations(
     layout: &Layout,
     length_m: f64,
     base_free: bool,
-) -> Vec<Deviation> {
+) -> Vec<ScrewDeviation> {
     let n = layout.dim();
     let screws = estimate.screws();
     let each: Vec<_> =
@@ -220,7 +220,7 @@ pub fn screw_deviations(
                 })
             };
             let (a, b) = (screw.direction(), joint.screw.direction());
-            Deviation {
+            ScrewDeviation {
                 tilt_rad: a.cross(&b).norm().atan2(a.dot(&b)),
                 shift_m: shift.norm(),
                 tilt_by_step: rows(tilting, length_m),

@@ -95,13 +95,13 @@ impl AbbCalibration {
 }
 
 /// An entry of a section: `-key value` each.
-struct Entry<'a> {
+struct SectionEntry<'a> {
     section: &'a str,
     /// Words with their lines.
     words: Vec<(&'a str, usize)>,
 }
 
-impl Entry<'_> {
+impl SectionEntry<'_> {
     fn value(&self, key: &str) -> Option<(&str, usize)> {
         let at = self.words.iter().position(|(word, _)| word.strip_prefix('-') == Some(key))?;
         self.words.get(at + 1).copied()
@@ -131,9 +131,9 @@ impl Entry<'_> {
 }
 
 /// The entries: an empty line ends one, unless the line before ends with a backslash.
-fn entries(text: &str) -> Vec<Entry<'_>> {
+fn entries(text: &str) -> Vec<SectionEntry<'_>> {
     let mut section = "";
-    let mut found: Vec<Entry<'_>> = Vec::new();
+    let mut found: Vec<SectionEntry<'_>> = Vec::new();
     let mut is_open = false;
     for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let line = line.trim();
@@ -145,7 +145,7 @@ fn entries(text: &str) -> Vec<Entry<'_>> {
         let words = line.split_whitespace().filter(|word| *word != "#").map(|word| (word, index + 1));
         match found.last_mut().filter(|_| is_open) {
             Some(entry) => entry.words.extend(words),
-            None if line.starts_with('-') => found.push(Entry { section, words: words.collect() }),
+            None if line.starts_with('-') => found.push(SectionEntry { section, words: words.collect() }),
             None => {}
         }
         is_open = goes_on;

@@ -16,5 +16,5 @@ pub mod logo;
 pub mod mimic;
 pub mod proof;
 pub mod robot_toml;
-mod unread;
+mod unread_elements;
 pub mod urdf;

@@ -16,7 +16,7 @@ pub fn read(path: &Path) -> Result<(&'static str, Vec<u8>)> {
     use std::io::Read as _;
     let refused = |message: String| ErrorKind::File.error(message).in_file(path);
     let mut bytes = Vec::new();
-    disk::here().open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(
+    disk::current_disk().open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(
         |error| refused(format!("the file cannot be read ({error}), expected a picture (PNG, JPEG or SVG)")),
     )?;
     if bytes.len() as u64 > LARGEST {

@@ -12,7 +12,7 @@ pub(crate) fn reading(
     follows: impl Fn(&str) -> Result<Option<Reading>>,
     circle: impl FnOnce(String) -> Error,
 ) -> Result<Reading> {
-    let mut reading = Reading::own(joint);
+    let mut reading = Reading::from_name(joint);
     let mut seen = BTreeSet::from([joint.to_owned()]);
     while let Some(leader) = follows(&reading.name)? {
         if !seen.insert(leader.name.clone()) {

@@ -22,7 +22,7 @@ impl Difference {
     /// Compares forward kinematics, of instruments and targets by their names, on `count` random configurations within the first robot's limits.
     #[must_use]
     pub fn from_robots(robot: &Robot, other: &Robot, count: usize) -> Self {
-        Reference::new(robot, count).difference(other)
+        ReferencePoses::new(robot, count).difference(other)
     }
 
     /// True if neither exceeds its bound; NaN does.
@@ -33,7 +33,7 @@ impl Difference {
 }
 
 /// A robot's poses on random configurations, for comparison with any number of robots.
-pub struct Reference<'a> {
+pub struct ReferencePoses<'a> {
     robot: &'a Robot,
     /// Readings of all configurations.
     readings: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct Reference<'a> {
     poses: Vec<Vec<Pose>>,
 }
 
-impl<'a> Reference<'a> {
+impl<'a> ReferencePoses<'a> {
     /// The poses on `count` random configurations within the robot's limits.
     pub fn new(robot: &'a Robot, count: usize) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
@@ -52,7 +52,7 @@ impl<'a> Reference<'a> {
         let tip = robot.forward_kinematics_of(&readings).collect();
         let further = mounts.map(|mount| robot.with_tip_at(mount).forward_kinematics_of(&readings).collect());
         let poses = std::iter::once(tip).chain(further).collect();
-        Reference { robot, readings, poses }
+        ReferencePoses { robot, readings, poses }
     }
 
     /// True if they are of this very robot.
@@ -67,9 +67,10 @@ impl<'a> Reference<'a> {
         let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
         let mut compare = |poses: &[Pose], other: &Robot| {
             for (a, b) in poses.iter().zip(other.forward_kinematics_of(&readings)) {
-                largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
+                largest.position_m =
+                    larger_or_nan(largest.position_m, (a.translation - b.translation).norm());
                 let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
-                largest.rotation_rad = larger(largest.rotation_rad, turn);
+                largest.rotation_rad = larger_or_nan(largest.rotation_rad, turn);
             }
         };
         let mut poses = self.poses.iter();
@@ -108,6 +109,6 @@ impl<'a> Reference<'a> {
 }
 
 /// The larger number, or NaN if either is NaN.
-fn larger(a: f64, b: f64) -> f64 {
+fn larger_or_nan(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }

@@ -14,7 +14,7 @@ use poecal_import::read_boards;
 use poecal_model::camera::{Corner, Lens, Picture};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, PictureSimulation, Simulation, elbow, gantry, scara};
+use poecal_model::simulate::{PictureSimulation, SessionKind, Simulation, elbow, gantry, scara};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::residuals::Residuals;
 
@@ -117,7 +117,7 @@ fn main() {
         "blocks",
         &format!("---\n{}", all.iter().map(|it| block(it)).collect::<Vec<_>>().join("\n---\n")),
     );
-    for (name, text) in recorded() {
+    for (name, text) in recorded_files() {
         put_bytes("recorded", &name, &text);
     }
     for (target, name, bytes) in binary().into_iter().chain(lists()) {
@@ -126,9 +126,9 @@ fn main() {
     put("joints", "points", &points);
     put("joints", "ids", "id,joint1,joint2,joint3,joint4\na,0.1,0.2,0.1,1\n\"b,c\",0.2,0.1,0,-1\n");
     for (name, robot, kind, count) in [
-        ("scara", scara(), Kind::POSE, 20),
-        ("gantry", gantry(), Kind::POINT, 20),
-        ("elbow", elbow(), Kind::MIXED, 26),
+        ("scara", scara(), SessionKind::POSE, 20),
+        ("gantry", gantry(), SessionKind::POINT, 20),
+        ("elbow", elbow(), SessionKind::MIXED, 26),
     ] {
         let made = Simulation { count, ..Simulation::default() }.run(&robot, kind).unwrap();
         let table = table(&made.data);
@@ -163,7 +163,8 @@ fn put_bytes(target: &str, name: &str, bytes: &[u8]) {
 
 /// Rows of an elbow: readings (deg) and points (mm), with their columns.
 fn rows() -> Vec<Vec<String>> {
-    let made = Simulation { count: 4, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap().data;
+    let made =
+        Simulation { count: 4, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap().data;
     let header = made.reading_names().iter().map(|it| format!("{it}[deg]"));
     let header = header.chain(["x[mm]", "y[mm]", "z[mm]"].map(str::to_owned)).collect();
     let row = |at: usize| {
@@ -339,9 +340,9 @@ type Line<'a> = &'a dyn Fn(usize, &[f64], [f64; 3]) -> String;
 
 /// Four configurations of an elbow (degrees), and points of its tip (mm), in the forms of instruments, controllers and recorders: each with a file of
 /// the other kind.
-fn recorded() -> Vec<(String, Vec<u8>)> {
+fn recorded_files() -> Vec<(String, Vec<u8>)> {
     let robot = elbow();
-    let made = Simulation { count: 4, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap().data;
+    let made = Simulation { count: 4, ..Simulation::default() }.run(&robot, SessionKind::POINT).unwrap().data;
     let numbers = |values: &[f64], factor: f64, by: &str| {
         values.iter().map(|it| format!("{:.5}", it * factor)).collect::<Vec<_>>().join(by)
     };
@@ -578,7 +579,7 @@ fn table(data: &Dataset) -> String {
 
 /// Points of two tools, in turn.
 fn two_targets(robot: &Robot) -> String {
-    let made = Simulation { count: 30, ..Simulation::default() }.run(robot, Kind::POINT).unwrap();
+    let made = Simulation { count: 30, ..Simulation::default() }.run(robot, SessionKind::POINT).unwrap();
     let mut text = robot.reading_names().join(",") + ",x,y,z,target\n";
     for (row, seen) in made.data.observations.iter().enumerate() {
         let values: Vec<String> = made.data.readings(row).iter().map(|value| format!("{value:.6}")).collect();
@@ -703,10 +704,10 @@ const BOARDS: [(&str, &str); 8] = [
 /// Messages of robot_calibration in JSON: pictures of a board before a camera, and positions of its corners by an arm.
 fn messages() -> Vec<String> {
     let session = Simulation { count: 6, seed: 5, ..Simulation::default() };
-    let usual = PictureSimulation::usual(session, true);
+    let usual = PictureSimulation::with_usual_camera(session, true);
     let board = read_boards("chessboard:6x5:40mm").unwrap().remove(0);
     let lens = Lens::pinhole([1400.0, 1400.0], [1920.0, 1200.0]);
-    let made = usual.before(board.clone(), lens).run(&elbow()).unwrap();
+    let made = usual.with_board_and_lens(board.clone(), lens).run(&elbow()).unwrap();
     let list = |all: Vec<String>| all.join(", ");
     let point = |frame: &str, [x, y]: [f64; 2]| {
         format!(

@@ -24,7 +24,7 @@ pub const BETWEEN: &str = "=====";
 
 /// A fuzzed function.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub struct FuzzTarget {
     /// Name, that of its program in `fuzz/fuzz_targets` and of its folder in `fuzz/seeds`.
     pub name: &'static str,
     /// Processes an input; returns true if it was understood, and not refused with an error.
@@ -34,28 +34,28 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 23] = [
-    Target { name: "urdf", run: targets::urdf, trials: 1500 },
-    Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
-    Target { name: "foreign", run: targets::foreign, trials: 3000 },
-    Target { name: "measurements", run: targets::measurements, trials: 6000 },
-    Target { name: "recorded", run: targets::recorded, trials: 400 },
-    Target { name: "mapping", run: targets::mapping, trials: 10000 },
-    Target { name: "joints", run: targets::joints, trials: 10000 },
-    Target { name: "cameras", run: targets::cameras, trials: 20000 },
-    Target { name: "boards", run: targets::boards, trials: 60000 },
-    Target { name: "messages", run: targets::messages, trials: 300 },
-    Target { name: "residuals", run: targets::residuals, trials: 5000 },
-    Target { name: "settings", run: targets::settings, trials: 20000 },
-    Target { name: "calibration", run: targets::calibration, trials: 1000 },
-    Target { name: "report", run: targets::report, trials: 600 },
-    Target { name: "programs", run: targets::programs, trials: 300 },
-    Target { name: "workbooks", run: targets::workbooks, trials: 3000 },
-    Target { name: "bags", run: targets::bags, trials: 3000 },
-    Target { name: "pictures", run: targets::pictures, trials: 3000 },
-    Target { name: "hand_eye", run: targets::hand_eye, trials: 3000 },
-    Target { name: "tcp", run: targets::tcp, trials: 6000 },
-    Target { name: "ledgers", run: targets::ledgers, trials: 10000 },
-    Target { name: "histories", run: targets::histories, trials: 20000 },
-    Target { name: "pipeline", run: targets::pipeline, trials: 150 },
+pub const TARGETS: [FuzzTarget; 23] = [
+    FuzzTarget { name: "urdf", run: targets::urdf, trials: 1500 },
+    FuzzTarget { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
+    FuzzTarget { name: "foreign", run: targets::foreign, trials: 3000 },
+    FuzzTarget { name: "measurements", run: targets::measurements, trials: 6000 },
+    FuzzTarget { name: "recorded", run: targets::read_recorded, trials: 400 },
+    FuzzTarget { name: "mapping", run: targets::mapping, trials: 10000 },
+    FuzzTarget { name: "joints", run: targets::joints, trials: 10000 },
+    FuzzTarget { name: "cameras", run: targets::cameras, trials: 20000 },
+    FuzzTarget { name: "boards", run: targets::boards, trials: 60000 },
+    FuzzTarget { name: "messages", run: targets::messages, trials: 300 },
+    FuzzTarget { name: "residuals", run: targets::residuals, trials: 5000 },
+    FuzzTarget { name: "settings", run: targets::settings, trials: 20000 },
+    FuzzTarget { name: "calibration", run: targets::calibration, trials: 1000 },
+    FuzzTarget { name: "report", run: targets::report, trials: 600 },
+    FuzzTarget { name: "programs", run: targets::programs, trials: 300 },
+    FuzzTarget { name: "workbooks", run: targets::workbooks, trials: 3000 },
+    FuzzTarget { name: "bags", run: targets::bags, trials: 3000 },
+    FuzzTarget { name: "pictures", run: targets::pictures, trials: 3000 },
+    FuzzTarget { name: "hand_eye", run: targets::hand_eye, trials: 3000 },
+    FuzzTarget { name: "tcp", run: targets::tcp, trials: 6000 },
+    FuzzTarget { name: "ledgers", run: targets::ledgers, trials: 10000 },
+    FuzzTarget { name: "histories", run: targets::histories, trials: 20000 },
+    FuzzTarget { name: "pipeline", run: targets::pipeline, trials: 150 },
 ];

@@ -89,40 +89,40 @@ impl<'a> Mutator<'a> {
     }
 
     fn seed(&mut self) -> &'a [u8] {
-        let index = self.below(self.seeds.len());
+        let index = self.draw_below(self.seeds.len());
         self.seeds.get(index).map_or(&[], Vec::as_slice)
     }
 
     /// A number from 0 to below a limit.
-    fn below(&mut self, limit: usize) -> usize {
+    fn draw_below(&mut self, limit: usize) -> usize {
         usize::try_from(self.generator.next_u64() % limit.max(1) as u64).unwrap_or(0)
     }
 
     /// A word at random.
     fn word(&mut self, words: &[&'a str]) -> &'a str {
-        let index = self.below(words.len());
+        let index = self.draw_below(words.len());
         words.get(index).copied().unwrap_or_default()
     }
 
     /// A stretch of bytes, mostly a short one.
     fn stretch(&mut self, length: usize) -> std::ops::Range<usize> {
-        let start = self.below(length + 1);
-        let most = if self.below(8) == 0 { length } else { 24 };
-        let count = self.below(most + 1);
+        let start = self.draw_below(length + 1);
+        let most = if self.draw_below(8) == 0 { length } else { 24 };
+        let count = self.draw_below(most + 1);
         start..(start + count).min(length)
     }
 
     fn change(&mut self, data: &mut Vec<u8>) {
-        let at = self.below(data.len() + 1);
-        match self.below(12) {
+        let at = self.draw_below(data.len() + 1);
+        match self.draw_below(12) {
             0 => {
-                let bit = self.below(8);
+                let bit = self.draw_below(8);
                 if let Some(byte) = data.get_mut(at) {
                     *byte ^= 1 << bit;
                 }
             }
             1 => {
-                let byte = u8::try_from(self.below(256)).unwrap_or(0);
+                let byte = u8::try_from(self.draw_below(256)).unwrap_or(0);
                 data.insert(at, byte);
             }
             2 => {
@@ -171,7 +171,7 @@ impl<'a> Mutator<'a> {
         let rest = data.get(start..).unwrap_or_default();
         let end =
             start + rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |newline| newline + 1);
-        match self.below(5) {
+        match self.draw_below(5) {
             0 | 1 => drop(data.drain(start..end)),
             2 | 3 => {
                 let line = data.get(start..end).unwrap_or_default().to_vec();

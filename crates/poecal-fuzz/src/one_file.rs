@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use poecal_storage::disk::{self, GivenFiles};
+use poecal_storage::disk::{self, PresetFiles};
 
 /// Result of some work with a single file of this text at a path.
 pub(crate) fn with_file<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
@@ -12,5 +12,5 @@ pub(crate) fn with_file<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> 
 /// Result of some work with only these files of bytes at these paths.
 pub(crate) fn with_files<T>(files: &[(&str, &[u8])], work: impl FnOnce() -> T) -> T {
     let files = files.iter().map(|(path, bytes)| ((*path).into(), bytes.to_vec())).collect();
-    disk::on(Arc::new(GivenFiles::new(files, None)), work)
+    disk::run_on_disk(Arc::new(PresetFiles::new(files, None)), work)
 }

@@ -25,7 +25,7 @@ pub(crate) fn parts<const N: usize>(data: &[u8]) -> Option<[String; N]> {
 }
 
 /// The value, if there is one; an error must read as one sentence, and its position must be in the text.
-pub(crate) fn understood<T>(result: Result<T>, text: &str) -> Option<T> {
+pub(crate) fn check_result<T>(result: Result<T>, text: &str) -> Option<T> {
     result.map_err(|error| check_error(&error, text)).ok()
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn size_m(robot: &Robot) -> f64 {
 }
 
 /// Asserts that the robots move alike, except for rounding.
-pub(crate) fn alike(robot: &Robot, again: &Robot, tolerance: f64, what: &str) {
+pub(crate) fn assert_alike(robot: &Robot, again: &Robot, tolerance: f64, what: &str) {
     let names = |robot: &Robot| {
         let joints = robot.joints.iter();
         joints.map(|joint| (joint.name.clone(), joint.kind, joint.reading.name.clone())).collect::<Vec<_>>()

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use poecal_fuzz::{Mutator, TARGETS, Target};
+use poecal_fuzz::{FuzzTarget, Mutator, TARGETS};
 use poecal_testing::trials::trials;
 
 /// Longest time of one input: one second on an idle machine may be many on a busy one.
@@ -19,8 +19,8 @@ fn main() {
     let named: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let (targets, files): (Vec<String>, Vec<String>) =
         named.into_iter().partition(|name| TARGETS.iter().any(|target| target.name == name));
-    let chosen = |target: &&Target| targets.is_empty() || targets.iter().any(|name| name == target.name);
-    let chosen: Vec<&Target> = TARGETS.iter().filter(chosen).collect();
+    let chosen = |target: &&FuzzTarget| targets.is_empty() || targets.iter().any(|name| name == target.name);
+    let chosen: Vec<&FuzzTarget> = TARGETS.iter().filter(chosen).collect();
     let next = AtomicUsize::new(0);
     let failed = AtomicUsize::new(0);
     let work = || {
@@ -40,7 +40,7 @@ fn fuzz_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz").join(name)
 }
 
-fn try_target(target: &Target, files: &[String]) -> bool {
+fn try_target(target: &FuzzTarget, files: &[String]) -> bool {
     let mut tried = Tried::default();
     if !files.is_empty() {
         return files.iter().all(|file| tried.input(target, &fs::read(file).unwrap()));
@@ -104,7 +104,7 @@ struct Tried {
 
 impl Tried {
     /// False if a property does not hold; the input is then kept.
-    fn input(&mut self, target: &Target, data: &[u8]) -> bool {
+    fn input(&mut self, target: &FuzzTarget, data: &[u8]) -> bool {
         let start = Instant::now();
         let outcome = catch_unwind(|| (target.run)(data));
         let took = start.elapsed();

@@ -34,15 +34,15 @@ pub use crate::poses::pose_table::pose_table;
 pub use crate::read::joints::{JointsTable, parse_joints, read_joints};
 pub use crate::read::labels::{LabelColumns, read_labels};
 pub use crate::read::socket_distance::SocketDistances;
+pub use crate::table::beam_breaks::lost_words;
 pub use crate::table::cells::{Cell, Separator, split};
-pub use crate::table::lost::lost_words;
 pub use crate::table::mapping::ColumnMap;
 pub use crate::table::number::DecimalSign;
 pub use crate::table::train_where::FitWhere;
 pub use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
-pub use crate::write::growing::{GrowingFile, News};
+pub use crate::write::growing_file::{GrowingFile, NewRows};
 pub use crate::write::own_rows::imported_table;
-pub use crate::write::rewritten::{JointRow, RewrittenTable, rewrite_joints};
+pub use crate::write::rewriting::{JointRow, RewrittenTable, rewrite_joints};
 pub use crate::write::template::{plan, planned_table, template, test_table};
 pub use guess::{ColumnGuess, FoundColumn, MappedChoice, MappedField, guess_columns};
 pub use poecal_fit::start::MotionEntry;
@@ -89,7 +89,7 @@ pub struct ReadOptions {
     /// True if a beam break, an empty or zero position, is an error; otherwise it is omitted and counted in a warning.
     pub strict: bool,
     /// Rows with a common device frame.
-    pub frames: Frames,
+    pub frames: FrameGrouping,
     /// Method by which joint readings and measurements in two files are matched; determined from the files if not stated.
     pub join: Option<Join>,
     /// The lag of the clocks of two streams, if it is known.
@@ -101,7 +101,7 @@ pub struct ReadOptions {
     /// Topics of bags, with or without the leading slash; the only possible ones if not stated.
     pub topics: Vec<String>,
     /// Bags whose messages were read elsewhere: their files are not opened.
-    pub bags: Vec<GivenBag>,
+    pub bags: Vec<ConvertedBag>,
     /// Known distances between the sockets of one `place`.
     pub socket_distances: Option<SocketDistances>,
     /// Contact of rows with a `plane` that do not state it in `contact`.
@@ -120,7 +120,7 @@ pub struct ReadOptions {
 
 /// A bag that was read from a file in another form, as the Python package reads `.db3`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct GivenBag {
+pub struct ConvertedBag {
     /// The file, by its name among those that are read.
     pub path: PathBuf,
     /// Its messages as MCAP.
@@ -226,7 +226,7 @@ impl std::str::FromStr for Lag {
 
 /// Rows with a common device frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Frames {
+pub enum FrameGrouping {
     /// All rows, or those of one name in the column `instrument`, have a common frame.
     #[default]
     Common,

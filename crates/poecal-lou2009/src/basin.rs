@@ -4,10 +4,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
 
-use super::seeds::{Purpose, derived};
+use super::seeds::{SeedPurpose, derive_seed};
 use super::session::PaperSession;
 use super::{Basin, LENGTH_M, MeasurementKind, tables};
-use crate::{Formulation, Method, Residual};
+use crate::{Method, PaperFormulation, PaperResidual};
 use poecal_arm::lie::Pose;
 use poecal_fit::problem::Problem;
 use poecal_fit::state::Estimate;
@@ -27,13 +27,13 @@ const REACHED_M: f64 = 1e-6;
 const LIMIT: usize = 40;
 
 /// Formulation and method.
-const WAYS: [(Formulation, Method); 6] = [
-    (Formulation::Adjoint, Method::GaussNewton),
-    (Formulation::Screw, Method::GaussNewton),
-    (Formulation::ScrewOffsets, Method::GaussNewton),
-    (Formulation::AdjointOffsets, Method::GaussNewton),
-    (Formulation::Adjoint, Method::LevenbergMarquardt),
-    (Formulation::Screw, Method::LevenbergMarquardt),
+const WAYS: [(PaperFormulation, Method); 6] = [
+    (PaperFormulation::Adjoint, Method::GaussNewton),
+    (PaperFormulation::Screw, Method::GaussNewton),
+    (PaperFormulation::ScrewOffsets, Method::GaussNewton),
+    (PaperFormulation::AdjointOffsets, Method::GaussNewton),
+    (PaperFormulation::Adjoint, Method::LevenbergMarquardt),
+    (PaperFormulation::Screw, Method::LevenbergMarquardt),
 ];
 
 /// Shares of noise-free fits that reach the truth, for each formulation, kind of measurement and size of error.
@@ -44,7 +44,7 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
         for error_deg in ERRORS_DEG {
             let reached: Vec<[bool; WAYS.len()]> = (0..trials as u64)
                 .into_par_iter()
-                .map(|trial| reached(seen, error_deg, seed, trial))
+                .map(|trial| reaching_methods(seen, error_deg, seed, trial))
                 .collect::<Result<_>>()?;
             by_error.push((error_deg, reached));
         }
@@ -68,32 +68,40 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
 }
 
 /// The paper's residual of poses belongs to the paper's method. Points have only one residual.
-fn residual(seen: MeasurementKind, method: Method) -> Residual {
+fn residual(seen: MeasurementKind, method: Method) -> PaperResidual {
     match (seen, method) {
-        (MeasurementKind::Poses, Method::GaussNewton) => Residual::Spatial,
-        (MeasurementKind::Poses, Method::LevenbergMarquardt) | (MeasurementKind::Points, _) => Residual::Tool,
+        (MeasurementKind::Poses, Method::GaussNewton) => PaperResidual::Spatial,
+        (MeasurementKind::Poses, Method::LevenbergMarquardt) | (MeasurementKind::Points, _) => {
+            PaperResidual::Tool
+        }
     }
 }
 
 /// Marks the formulations and methods that reach a random truth from the nominal elbow.
-fn reached(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
-    let nominal = tables::nominal();
+fn reaching_methods(
+    seen: MeasurementKind,
+    error_deg: f64,
+    seed: u64,
+    trial: u64,
+) -> Result<[bool; WAYS.len()]> {
+    let nominal = tables::nominal_robot();
     let simulation = Simulation {
         error_rotation_rad: error_deg.to_radians(),
         error_position_m: error_deg * MM_PER_DEG * 1e-3,
         ..Simulation::default()
     };
-    let mut generator = ChaCha8Rng::seed_from_u64(derived(seed, Purpose::Truth, trial));
-    let actual = simulation.perturbed(&nominal, &mut generator);
+    let mut generator = ChaCha8Rng::seed_from_u64(derive_seed(seed, SeedPurpose::Truth, trial));
+    let actual = simulation.perturb(&nominal, &mut generator);
     let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
-    let session = PaperSession::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
+    let session =
+        PaperSession::new(&nominal, truth, seen, ROWS, derive_seed(seed, SeedPurpose::TruthRows, trial));
     // A radian counts as the length of the arm that it moves, so that neither outweighs the other.
     let noise = Noise::new(LENGTH_M, 1.0);
-    let exact = session.exact();
+    let exact = session.exact_poses();
     let mut reached = [false; WAYS.len()];
     for (reached, (formulation, method)) in reached.iter_mut().zip(WAYS) {
         let data = session.data(residual(seen, method), &exact)?;
-        let free = session.free(formulation);
+        let free = session.free_parameters(formulation);
         let problem = Problem::new(session.session_with_data(&data, LENGTH_M), session.rows(), free, noise);
         let options = Options { iterations: LIMIT, ..Options::default() };
         let (found, _, _) = (method.minimize())(&problem, session.start(), &options);

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ReproductionOptions;
-use poecal_calibrate::{CalibrationOptions, Loss, Models, Robust, calibrate};
-use poecal_fit::state::{Packed, Session};
+use poecal_calibrate::{CalibrationOptions, Loss, Models, RobustLoss, calibrate};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
+use poecal_model::simulate::{GrossErrors, SessionKind, Simulation, elbow, gantry, scara, seven_axis};
 use poecal_numerics::error::Result;
 
 /// Shares of wrong rows, percent.
@@ -55,30 +55,32 @@ pub struct BreakdownEntry {
 /// Those of [`calibrate`].
 pub fn breakdown(options: &ReproductionOptions) -> Result<Breakdown> {
     let robots = [elbow(), scara(), seven_axis(), gantry()];
-    let outcomes: Vec<Vec<Outcome>> = (0..options.trials)
+    let outcomes: Vec<Vec<BreakdownOutcome>> = (0..options.trials)
         .into_par_iter()
         .map(|trial| {
-            let kind = if (trial / robots.len()).is_multiple_of(2) { Kind::POSE } else { Kind::POINT };
+            let kind =
+                if (trial / robots.len()).is_multiple_of(2) { SessionKind::POSE } else { SessionKind::POINT };
             session(&robots[trial % robots.len()], kind, options.seed.wrapping_add(trial as u64))
         })
         .collect::<Result<_>>()?;
     let entries = losses().into_iter().enumerate().flat_map(|(l, (word, _))| {
         let outcomes = &outcomes;
         SHARES.iter().enumerate().map(move |(s, &share_percent)| {
-            let own: Vec<&Outcome> = outcomes.iter().map(|session| &session[l * SHARES.len() + s]).collect();
+            let own: Vec<&BreakdownOutcome> =
+                outcomes.iter().map(|session| &session[l * SHARES.len() + s]).collect();
             entry(word, share_percent, &own)
         })
     });
     Ok(Breakdown { sessions: options.trials, rows: ROWS, seed: options.seed, entries: entries.collect() })
 }
 
-fn losses() -> [(&'static str, Robust); 4] {
-    let loss = |loss: Loss| (loss.word(), Robust::Loss(loss));
-    [("off", Robust::Off), loss(Loss::Huber), loss(Loss::Cauchy), loss(Loss::Tukey)]
+fn losses() -> [(&'static str, RobustLoss); 4] {
+    let loss = |loss: Loss| (loss.word(), RobustLoss::Loss(loss));
+    [("off", RobustLoss::Off), loss(Loss::Huber), loss(Loss::Cauchy), loss(Loss::Tukey)]
 }
 
 /// One loss and share on one session.
-struct Outcome {
+struct BreakdownOutcome {
     ratio: f64,
     gross: usize,
     others: usize,
@@ -87,7 +89,7 @@ struct Outcome {
 }
 
 /// One session with every loss and share.
-fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
+fn session(robot: &Robot, kind: SessionKind, seed: u64) -> Result<Vec<BreakdownOutcome>> {
     let simulation = Simulation { count: ROWS, seed, ..Simulation::default() };
     let made = simulation.run(robot, kind)?;
     let judging = simulation.held_out(&made, kind, JUDGING)?;
@@ -98,16 +100,17 @@ fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
             &CalibrationOptions { held_out: Some(0.0), robust, diagnose: false, ..Default::default() },
         )
     };
-    let clean = held_out_m(robot, &judging, &fit(&made.data, Robust::Off)?.models);
+    let clean = held_out_m(robot, &judging, &fit(&made.data, RobustLoss::Off)?.models);
     let mut outcomes = Vec::with_capacity(4 * SHARES.len());
     for (_, robust) in losses() {
         for share in SHARES {
             let mut data = made.data.clone();
-            let gross = Gross { share: f64::from(share) / 100.0, seed, ..Gross::default() }.spoil(&mut data);
+            let gross = GrossErrors { share: f64::from(share) / 100.0, seed, ..GrossErrors::default() }
+                .spoil(&mut data);
             let found = fit(&data, robust)?;
             let is_gross = |row: &u32| gross.binary_search(row).is_ok();
             let gross_suspected = found.robustness.suspects().filter(is_gross).count();
-            outcomes.push(Outcome {
+            outcomes.push(BreakdownOutcome {
                 ratio: held_out_m(robot, &judging, &found.models) / clean,
                 gross: gross.len(),
                 others: data.len() - gross.len(),
@@ -121,17 +124,17 @@ fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
 
 /// Root mean square position error on rows free of noise.
 fn held_out_m(robot: &Robot, judging: &Dataset, models: &Models) -> f64 {
-    let packed = Packed::from_dataset(robot, judging);
+    let packed = PackedValues::from_dataset(robot, judging);
     let rows: Vec<u32> = (0..u32::try_from(judging.len()).unwrap_or(u32::MAX)).collect();
     let errors = Session::new(robot, judging, &packed, true).errors(&rows, &models.calibrated);
     (errors.iter().map(|e| e.position_m().norm_squared()).sum::<f64>() / errors.len().max(1) as f64).sqrt()
 }
 
-fn entry(word: &str, share_percent: u32, outcomes: &[&Outcome]) -> BreakdownEntry {
+fn entry(word: &str, share_percent: u32, outcomes: &[&BreakdownOutcome]) -> BreakdownEntry {
     let mut ratios: Vec<f64> = outcomes.iter().map(|outcome| outcome.ratio).collect();
     ratios.sort_by(f64::total_cmp);
     let at = |share: f64| ratios.get((share * ratios.len() as f64) as usize).copied().unwrap_or(f64::NAN);
-    let sum = |of: fn(&Outcome) -> usize| outcomes.iter().map(|outcome| of(outcome)).sum::<usize>();
+    let sum = |of: fn(&BreakdownOutcome) -> usize| outcomes.iter().map(|outcome| of(outcome)).sum::<usize>();
     let share = |suspected: usize, all: usize| (all > 0).then(|| suspected as f64 / all as f64);
     BreakdownEntry {
         robust: word.to_owned(),

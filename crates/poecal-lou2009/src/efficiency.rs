@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::seeds::{Purpose, derived};
+use super::seeds::{SeedPurpose, derive_seed};
 use super::session::PaperSession;
 use super::{Efficiency, LENGTH_M, MeasurementKind, NOISE, runs, tables};
-use crate::{Formulation, Method, Residual};
+use crate::{Method, PaperFormulation, PaperResidual};
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_arm::lie::TargetTwist;
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Chain, Linkage};
+use poecal_fit::state::{Linkage, RowChain};
 use poecal_numerics::error::Result;
 use poecal_numerics::solve::{LeastSquares, Options};
 
@@ -19,18 +19,18 @@ const ROWS: usize = 40;
 const LIMIT: usize = 60;
 
 /// Compared items: formulation, residual of poses, method.
-type Way = (Formulation, Residual, Method);
+type ComparedMethod = (PaperFormulation, PaperResidual, Method);
 
-const WAYS: [Way; 9] = [
-    (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
-    (Formulation::Screw, Residual::Tool, Method::GaussNewton),
-    (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
-    (Formulation::AdjointOffsets, Residual::Tool, Method::GaussNewton),
-    (Formulation::Adjoint, Residual::Spatial, Method::GaussNewton),
-    (Formulation::Screw, Residual::Spatial, Method::GaussNewton),
-    (Formulation::ScrewOffsets, Residual::Spatial, Method::GaussNewton),
-    (Formulation::AdjointOffsets, Residual::Spatial, Method::GaussNewton),
-    (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
+const WAYS: [ComparedMethod; 9] = [
+    (PaperFormulation::Adjoint, PaperResidual::Tool, Method::GaussNewton),
+    (PaperFormulation::Screw, PaperResidual::Tool, Method::GaussNewton),
+    (PaperFormulation::ScrewOffsets, PaperResidual::Tool, Method::GaussNewton),
+    (PaperFormulation::AdjointOffsets, PaperResidual::Tool, Method::GaussNewton),
+    (PaperFormulation::Adjoint, PaperResidual::Spatial, Method::GaussNewton),
+    (PaperFormulation::Screw, PaperResidual::Spatial, Method::GaussNewton),
+    (PaperFormulation::ScrewOffsets, PaperResidual::Spatial, Method::GaussNewton),
+    (PaperFormulation::AdjointOffsets, PaperResidual::Spatial, Method::GaussNewton),
+    (PaperFormulation::Adjoint, PaperResidual::Tool, Method::LevenbergMarquardt),
 ];
 
 /// All comparisons: one session of configurations for each kind of measurement, with new noise in every trial, the same for every combination.
@@ -38,14 +38,14 @@ pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     let mut found = Vec::new();
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         // Points have only one residual.
-        let is_own = |way: &Way| seen == MeasurementKind::Poses || way.1 == Residual::Tool;
-        let ways: Vec<Way> = WAYS.into_iter().filter(is_own).collect();
-        let rows_seed = derived(seed, Purpose::Fits, 0);
-        let session = PaperSession::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
+        let is_own = |way: &ComparedMethod| seen == MeasurementKind::Poses || way.1 == PaperResidual::Tool;
+        let ways: Vec<ComparedMethod> = WAYS.into_iter().filter(is_own).collect();
+        let rows_seed = derive_seed(seed, SeedPurpose::Fits, 0);
+        let session = PaperSession::new(&tables::nominal_robot(), runs::truth(false), seen, ROWS, rows_seed);
         let (bound_rms_m, unknowns) = bound(&session)?;
         let trials: Vec<Vec<Option<f64>>> = (0..trials as u64)
             .into_par_iter()
-            .map(|trial| fits(&session, &ways, derived(seed, Purpose::FitNoise, trial)))
+            .map(|trial| fits(&session, &ways, derive_seed(seed, SeedPurpose::FitNoise, trial)))
             .collect::<Result<_>>()?;
         for (k, &way) in ways.iter().enumerate() {
             let ends: Vec<Option<f64>> = trials.iter().map(|ends| ends[k]).collect();
@@ -56,13 +56,13 @@ pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
 }
 
 /// Squared held-out errors of one noisy session fitted by every combination; `None` for a fit that did not end.
-fn fits(session: &PaperSession, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> {
-    let measured = session.noisy(NOISE, seed);
-    let tool = session.data(Residual::Tool, &measured)?;
-    let spatial = session.data(Residual::Spatial, &measured)?;
-    let fit = |&(formulation, residual, method): &Way| {
-        let data = if residual == Residual::Tool { &tool } else { &spatial };
-        let free = session.free(formulation);
+fn fits(session: &PaperSession, ways: &[ComparedMethod], seed: u64) -> Result<Vec<Option<f64>>> {
+    let measured = session.noisy_poses(NOISE, seed);
+    let tool = session.data(PaperResidual::Tool, &measured)?;
+    let spatial = session.data(PaperResidual::Spatial, &measured)?;
+    let fit = |&(formulation, residual, method): &ComparedMethod| {
+        let data = if residual == PaperResidual::Tool { &tool } else { &spatial };
+        let free = session.free_parameters(formulation);
         let problem = Problem::new(session.session_with_data(data, LENGTH_M), session.rows(), free, NOISE);
         let options = Options { iterations: LIMIT, ..Options::default() };
         let (found, _, summary) = (method.minimize())(&problem, session.start(), &options);
@@ -74,7 +74,7 @@ fn fits(session: &PaperSession, ways: &[Way], seed: u64) -> Result<Vec<Option<f6
 /// Summary of the fits of one combination.
 fn summary(
     seen: MeasurementKind,
-    way: Way,
+    way: ComparedMethod,
     ends: &[Option<f64>],
     bound_rms_m: f64,
     unknowns: usize,
@@ -105,15 +105,15 @@ fn summary(
 /// The least RMS error of predicted positions for any unbiased estimator, metres: `tr(J N⁻¹ Jᵀ)` at the truth, N being the information of the minimal
 /// basis from measurements with this noise. It is returned with the number of unknowns.
 fn bound(session: &PaperSession) -> Result<(f64, usize)> {
-    let data = session.data(Residual::Tool, &session.exact())?;
-    let free = session.free(Formulation::Adjoint);
+    let data = session.data(PaperResidual::Tool, &session.exact_poses())?;
+    let free = session.free_parameters(PaperFormulation::Adjoint);
     let problem = Problem::new(session.session_with_data(&data, LENGTH_M), session.rows(), free, NOISE);
     let n = problem.dim();
     let upper = problem.normal(&session.truth).gram;
     let gram = DMatrix::from_fn(n, n, |a, b| upper[a.min(b) * n + a.max(b)]);
     let Some(factor) = gram.cholesky() else { return Ok((f64::INFINITY, n)) };
     let linkage = Linkage::new(&session.truth);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
     // Variance of the predicted position, summed over unseen configurations and coordinates.
     let mut sum = 0.0;

@@ -1,6 +1,6 @@
 //! Results of a reproduction of lou2009: every number of its reports and plots.
 
-use crate::{Formulation, Method, Residual};
+use crate::{Method, PaperFormulation, PaperResidual};
 use serde::Serialize;
 
 /// Kind of a run's measurements.
@@ -26,9 +26,9 @@ impl MeasurementKind {
 
 /// One calibration of the elbow from its nominal screws by plain Gauss-Newton, as in the paper.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Run {
+pub struct ElbowRun {
     /// Parameterisation of errors.
-    pub formulation: Formulation,
+    pub formulation: PaperFormulation,
     /// Kind of the measurements.
     pub measurement: MeasurementKind,
     /// True if the true robot has joint offsets beside its screw errors.
@@ -75,9 +75,14 @@ pub struct Run {
     pub trace: Vec<Iteration>,
 }
 
-impl Run {
+impl ElbowRun {
     /// True if it is the run without noise of a formulation.
-    pub(crate) fn is_exact(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> bool {
+    pub(crate) fn is_exact(
+        &self,
+        formulation: PaperFormulation,
+        seen: MeasurementKind,
+        offsets: bool,
+    ) -> bool {
         (self.formulation, self.measurement, self.offsets_in_truth, self.noise)
             == (formulation, seen, offsets, false)
     }
@@ -88,7 +93,7 @@ impl Run {
 pub struct Iteration {
     /// RMS distance from prediction to measurement, metres.
     pub residual_rms_m: f64,
-    /// As [`Run::screw_error_max`].
+    /// As [`ElbowRun::screw_error_max`].
     pub screw_error_max: f64,
 }
 
@@ -152,7 +157,7 @@ pub struct MatrixSpectrum {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Efficiency {
     /// Parameterisation of errors.
-    pub formulation: Formulation,
+    pub formulation: PaperFormulation,
     /// Kind of the measurements.
     pub measurement: MeasurementKind,
     /// `tool` (at the tool, whitened) or `spatial` (the paper's logarithm, whitened alike); points have `tool` only.
@@ -193,7 +198,7 @@ impl Efficiency {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Basin {
     /// Parameterisation of errors.
-    pub formulation: Formulation,
+    pub formulation: PaperFormulation,
     /// Kind of the measurements.
     pub measurement: MeasurementKind,
     /// `tool` or `spatial`, as in [`Efficiency`].
@@ -256,7 +261,7 @@ pub struct Reproduction {
     /// Metres per radian in ranks.
     pub length_m: f64,
     /// The calibrations.
-    pub runs: Vec<Run>,
+    pub runs: Vec<ElbowRun>,
     /// Claim by claim.
     pub claims: Vec<Claim>,
     /// The screws compared with Table II.
@@ -277,16 +282,16 @@ impl Reproduction {
     /// The run of a formulation without noise.
     pub(crate) fn exact_run(
         &self,
-        formulation: Formulation,
+        formulation: PaperFormulation,
         seen: MeasurementKind,
         offsets: bool,
-    ) -> Option<&Run> {
+    ) -> Option<&ElbowRun> {
         self.runs.iter().find(|run| run.is_exact(formulation, seen, offsets))
     }
 
     /// Number of statements that hold, and their total number: of the paper's, or of the findings that it leaves out.
     #[must_use]
-    pub fn holding(&self, said_by_paper: bool) -> (usize, usize) {
+    pub fn count_holding(&self, said_by_paper: bool) -> (usize, usize) {
         let claims = || self.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
         (claims().filter(|claim| claim.holds).count(), claims().count())
     }
@@ -294,9 +299,9 @@ impl Reproduction {
     /// The fits of a formulation with noise by plain Gauss-Newton.
     pub(crate) fn noisy_fits(
         &self,
-        formulation: Formulation,
+        formulation: PaperFormulation,
         seen: MeasurementKind,
-        residual: Residual,
+        residual: PaperResidual,
     ) -> Option<&Efficiency> {
         self.efficiency.iter().find(|it| {
             (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
@@ -307,7 +312,7 @@ impl Reproduction {
     /// The distant starts of a formulation, the nearest first.
     pub(crate) fn basins(
         &self,
-        formulation: Formulation,
+        formulation: PaperFormulation,
         seen: MeasurementKind,
         method: Method,
     ) -> impl Iterator<Item = &Basin> {

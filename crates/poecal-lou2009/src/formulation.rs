@@ -7,13 +7,13 @@ use poecal_model::robot::{JointKind, Term};
 use poecal_numerics::solve::minimize;
 use serde::Serialize;
 
-use crate::{FreeScrew, Spatial, gauss_newton};
+use crate::{FreeScrew, SpatialResidual, gauss_newton};
 
 /// Parameterisation of joint errors (lou2009, sections II and III). All describe the same robots; they differ in the number of unknowns, in the
 /// treatment of constraints, and in the identifiable parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Formulation {
+pub enum PaperFormulation {
     /// Each screw moves as a rigid body, `ξ ← Ad_exp(η) ξ`, in the minimal basis: no constraints, no offsets (lou2009 16 to 18).
     #[default]
     Adjoint,
@@ -25,19 +25,23 @@ pub enum Formulation {
     AdjointOffsets,
 }
 
-impl Formulation {
+impl PaperFormulation {
     /// All formulations.
-    pub const ALL: [Formulation; 4] =
-        [Formulation::Adjoint, Formulation::Screw, Formulation::ScrewOffsets, Formulation::AdjointOffsets];
+    pub const ALL: [PaperFormulation; 4] = [
+        PaperFormulation::Adjoint,
+        PaperFormulation::Screw,
+        PaperFormulation::ScrewOffsets,
+        PaperFormulation::AdjointOffsets,
+    ];
 
     /// The stable word used in files and on the command line.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            Formulation::Adjoint => "adjoint",
-            Formulation::Screw => "screw",
-            Formulation::ScrewOffsets => "screw-offsets",
-            Formulation::AdjointOffsets => "adjoint-offsets",
+            PaperFormulation::Adjoint => "adjoint",
+            PaperFormulation::Screw => "screw",
+            PaperFormulation::ScrewOffsets => "screw-offsets",
+            PaperFormulation::AdjointOffsets => "adjoint-offsets",
         }
     }
 
@@ -68,36 +72,36 @@ impl Formulation {
     /// True if joint offsets are unknowns.
     #[must_use]
     pub fn has_offsets(self) -> bool {
-        matches!(self, Formulation::ScrewOffsets | Formulation::AdjointOffsets)
+        matches!(self, PaperFormulation::ScrewOffsets | PaperFormulation::AdjointOffsets)
     }
 
     /// True if screws are six free numbers, projected to screws after every step.
     #[must_use]
     pub fn has_free_screws(self) -> bool {
-        matches!(self, Formulation::Screw | Formulation::ScrewOffsets)
+        matches!(self, PaperFormulation::Screw | PaperFormulation::ScrewOffsets)
     }
 }
 
 /// Form of the errors of measured frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Residual {
+pub enum PaperResidual {
     /// Position and rotation at the target, in which a device's data sheet states its noise.
     #[default]
     Tool,
-    /// The twist about the device's origin ([`Spatial`]).
+    /// The twist about the device's origin ([`SpatialResidual`]).
     Spatial,
 }
 
-impl Residual {
+impl PaperResidual {
     /// All forms.
-    pub const ALL: [Residual; 2] = [Residual::Tool, Residual::Spatial];
+    pub const ALL: [PaperResidual; 2] = [PaperResidual::Tool, PaperResidual::Spatial];
 
     /// The stable word used in files and on the command line.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            Residual::Tool => "tool",
-            Residual::Spatial => "spatial",
+            PaperResidual::Tool => "tool",
+            PaperResidual::Spatial => "spatial",
         }
     }
 
@@ -105,8 +109,8 @@ impl Residual {
     #[must_use]
     pub fn model(self) -> Option<&'static dyn PoseResidual> {
         match self {
-            Residual::Tool => None,
-            Residual::Spatial => Some(&Spatial),
+            PaperResidual::Tool => None,
+            PaperResidual::Spatial => Some(&SpatialResidual),
         }
     }
 }
@@ -146,12 +150,16 @@ impl Method {
 
 /// A formulation with its residual and method, for [`CalibrationOptions`](calibration::CalibrationOptions).
 #[must_use]
-pub fn formulated(formulation: Formulation, residual: Residual, method: Method) -> calibration::Formulation {
+pub fn to_formulation(
+    formulation: PaperFormulation,
+    residual: PaperResidual,
+    method: Method,
+) -> calibration::Formulation {
     let joint_parameters: fn(&[JointKind]) -> Vec<Parameter> = match formulation {
-        Formulation::Adjoint => |kinds| Formulation::Adjoint.joint_parameters(kinds),
-        Formulation::Screw => |kinds| Formulation::Screw.joint_parameters(kinds),
-        Formulation::ScrewOffsets => |kinds| Formulation::ScrewOffsets.joint_parameters(kinds),
-        Formulation::AdjointOffsets => |kinds| Formulation::AdjointOffsets.joint_parameters(kinds),
+        PaperFormulation::Adjoint => |kinds| PaperFormulation::Adjoint.joint_parameters(kinds),
+        PaperFormulation::Screw => |kinds| PaperFormulation::Screw.joint_parameters(kinds),
+        PaperFormulation::ScrewOffsets => |kinds| PaperFormulation::ScrewOffsets.joint_parameters(kinds),
+        PaperFormulation::AdjointOffsets => |kinds| PaperFormulation::AdjointOffsets.joint_parameters(kinds),
     };
     calibration::Formulation {
         words: calibration::FormulationWords {
@@ -167,16 +175,16 @@ pub fn formulated(formulation: Formulation, residual: Residual, method: Method) 
 }
 
 /// Effect of the formulation and method on the result.
-fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
+fn note(formulation: PaperFormulation, method: Method) -> Option<&'static str> {
     match (formulation, method) {
-        (Formulation::Adjoint, _) | (Formulation::Screw, Method::LevenbergMarquardt) => None,
-        (Formulation::Screw, Method::GaussNewton) => {
+        (PaperFormulation::Adjoint, _) | (PaperFormulation::Screw, Method::LevenbergMarquardt) => None,
+        (PaperFormulation::Screw, Method::GaussNewton) => {
             Some("screws are normalised after each step, so with noise this is not the least squares")
         }
-        (Formulation::ScrewOffsets, Method::GaussNewton) => Some(
+        (PaperFormulation::ScrewOffsets, Method::GaussNewton) => Some(
             "screws are normalised after each step, so with noise this is not the least squares; joint offsets cannot be separated from screws, and are part of them",
         ),
-        (Formulation::ScrewOffsets | Formulation::AdjointOffsets, _) => {
+        (PaperFormulation::ScrewOffsets | PaperFormulation::AdjointOffsets, _) => {
             Some("joint offsets cannot be separated from screws, and are part of them")
         }
     }
@@ -188,7 +196,8 @@ mod tests {
 
     #[test]
     fn the_usual_formulation_is_that_of_the_library() {
-        let usual = formulated(Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt);
+        let usual =
+            to_formulation(PaperFormulation::Adjoint, PaperResidual::Tool, Method::LevenbergMarquardt);
         assert_eq!(usual, calibration::Formulation::default());
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, Screw, TargetTwist, Twist, rotation};
 use poecal_fit::parameters::{Column, OtherScrew, Parameter, ScrewModel};
-use poecal_fit::state::{Chain, JointView};
+use poecal_fit::state::{JointView, RowChain};
 use poecal_model::robot::JointKind;
 
 /// A screw with all its numbers free, `ξ ← ξ + dξ`, made a screw again by the retraction (okamura1996, lou2009
@@ -47,7 +47,7 @@ impl ScrewModel for FreeScrew {
         }
     }
 
-    fn target_twists(&self, joint: &JointView, chain: &Chain, out: &mut [TargetTwist]) {
+    fn target_twists(&self, joint: &JointView, chain: &RowChain, out: &mut [TargetTwist]) {
         let zero = Vector3::zeros();
         match joint.kind {
             JointKind::Revolute => {

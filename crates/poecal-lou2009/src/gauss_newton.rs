@@ -1,6 +1,6 @@
 //! Plain Gauss-Newton: the iterated least squares of okamura1996 and lou2009. Every step is accepted as it is.
 
-use poecal_numerics::solve::{LeastSquares, Normal, Options, Summary, Termination};
+use poecal_numerics::solve::{LeastSquares, NormalEquations, Options, Summary, Termination};
 
 /// Minimises from `start` by full steps; returns the final state, its normal information and a summary. It ends if the part of the step that the
 /// retraction keeps vanishes, which with constraints restored after each step need not be a minimum (docs/theory.md §5 (22d)). It may diverge. It
@@ -9,7 +9,7 @@ pub fn gauss_newton<P: LeastSquares>(
     problem: &P,
     start: P::State,
     options: &Options,
-) -> (P::State, Normal, Summary) {
+) -> (P::State, NormalEquations, Summary) {
     let mut state = start;
     let mut normal = problem.normal(&state);
     let mut trace = vec![normal.mean_square()];

@@ -1,4 +1,4 @@
-//! Additions to the library for lou2009: its formulations ([`formulated`]), its experiment with each of them and the outcome of its claims
+//! Additions to the library for lou2009: its formulations ([`to_formulation`]), its experiment with each of them and the outcome of its claims
 //! ([`lou2009`]), and an experiment on the effect of gross errors on a calibration ([`breakdown()`]). It uses public items of the library; the
 //! library does not depend on it.
 //!
@@ -24,17 +24,17 @@ pub mod tables;
 
 pub use breakdown::{Breakdown, BreakdownEntry, breakdown};
 pub use findings::{
-    Basin, Claim, Efficiency, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow, Reproduction,
-    Run, ScrewRow,
+    Basin, Claim, Efficiency, ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow,
+    Reproduction, ScrewRow,
 };
 
-pub use formulation::{Formulation, Method, Residual, formulated};
+pub use formulation::{Method, PaperFormulation, PaperResidual, to_formulation};
 pub use free_screw::FreeScrew;
 pub use gauss_newton::gauss_newton;
-pub use spatial::Spatial;
+pub use spatial::SpatialResidual;
 
-use claims::{Evidence, claims};
-use runs::Ended;
+use claims::{ClaimEvidence, claims};
+use runs::FinishedRun;
 
 use poecal_arm::lie::Screw;
 use poecal_model::measurement::{Noise, Quantity};
@@ -94,12 +94,17 @@ pub fn lou2009(options: &ReproductionOptions) -> Result<Reproduction> {
         efficiency: efficiency::efficiency(options.trials, options.seed)?,
         basin: basin::basin(options.starts, options.seed)?,
     };
-    found.claims = claims(&Evidence { runs: &ended, found: &found, seed: options.seed })?;
+    found.claims = claims(&ClaimEvidence { runs: &ended, found: &found, seed: options.seed })?;
     Ok(found)
 }
 
 /// A noise-free run.
-fn exact(ended: &[Ended], formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Option<&Ended> {
+fn find_exact_run(
+    ended: &[FinishedRun],
+    formulation: PaperFormulation,
+    seen: MeasurementKind,
+    offsets: bool,
+) -> Option<&FinishedRun> {
     ended.iter().find(|it| it.run.is_exact(formulation, seen, offsets))
 }
 
@@ -107,10 +112,10 @@ fn coordinates(screw: &Screw) -> [f64; 6] {
     screw.twist().to_vector().into()
 }
 
-fn screws(ended: &[Ended]) -> Vec<ScrewRow> {
-    let (nominal, prescribed) = (tables::nominal(), tables::prescribed());
+fn screws(ended: &[FinishedRun]) -> Vec<ScrewRow> {
+    let (nominal, prescribed) = (tables::nominal_robot(), tables::prescribed_robot());
     let identified = |seen, joint: usize| {
-        exact(ended, Formulation::Adjoint, seen, false)
+        find_exact_run(ended, PaperFormulation::Adjoint, seen, false)
             .map_or([f64::NAN; 6], |run| coordinates(&run.estimate.screws()[joint]))
     };
     let printed = tables::printed_screws();
@@ -131,21 +136,21 @@ fn screws(ended: &[Ended]) -> Vec<ScrewRow> {
         .collect()
 }
 
-fn point(ended: &[Ended]) -> PointRow {
+fn point(ended: &[FinishedRun]) -> PointRow {
     PointRow {
-        nominal: tables::nominal().home.translation.into(),
-        prescribed: tables::prescribed().home.translation.into(),
-        from_points: exact(ended, Formulation::Adjoint, MeasurementKind::Points, false)
+        nominal: tables::nominal_robot().home.translation.into(),
+        prescribed: tables::prescribed_robot().home.translation.into(),
+        from_points: find_exact_run(ended, PaperFormulation::Adjoint, MeasurementKind::Points, false)
             .map_or([f64::NAN; 3], |run| run.estimate.base_from_target[0].translation.into()),
     }
 }
 
-fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
+fn offsets(ended: &[FinishedRun]) -> Vec<OffsetRow> {
     let identified = |formulation, joint: usize| {
-        exact(ended, formulation, MeasurementKind::Poses, true)
+        find_exact_run(ended, formulation, MeasurementKind::Poses, true)
             .map_or(f64::NAN, |run| run.estimate.coefficient(joint, Term::OFFSET).to_degrees())
     };
-    tables::nominal()
+    tables::nominal_robot()
         .joints
         .iter()
         .zip(tables::PRESCRIBED_OFFSETS_DEG)
@@ -153,19 +158,19 @@ fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
         .map(|(k, (joint, prescribed_deg))| OffsetRow {
             joint: joint.name.clone(),
             prescribed_deg,
-            screw_offsets_deg: identified(Formulation::ScrewOffsets, k),
-            adjoint_offsets_deg: identified(Formulation::AdjointOffsets, k),
+            screw_offsets_deg: identified(PaperFormulation::ScrewOffsets, k),
+            adjoint_offsets_deg: identified(PaperFormulation::AdjointOffsets, k),
         })
         .collect()
 }
 
 /// The paper's matrices of all formulations, at the nominal and at the identified robot.
-fn spectra(ended: &[Ended], seed: u64) -> Vec<MatrixSpectrum> {
+fn spectra(ended: &[FinishedRun], seed: u64) -> Vec<MatrixSpectrum> {
     let mut spectra = Vec::new();
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         let session = runs::session(false, seen, seed);
-        for formulation in Formulation::ALL {
-            let Some(identified) = exact(ended, formulation, seen, false) else { continue };
+        for formulation in PaperFormulation::ALL {
+            let Some(identified) = find_exact_run(ended, formulation, seen, false) else { continue };
             for (at, estimate) in [("nominal", &session.start()), ("identified", &identified.estimate)] {
                 let matrix = runs::matrix(&session, estimate, formulation);
                 let (values, rank) = literal::singular_values(&matrix);

@@ -5,7 +5,7 @@
 use nalgebra::{DMatrix, Matrix3x6, Matrix6, Vector3, Vector6};
 
 use super::MeasurementKind;
-use crate::Formulation;
+use crate::PaperFormulation;
 use poecal_arm::lie::{Pose, Screw, Twist, hat};
 use poecal_model::robot::Robot;
 
@@ -21,7 +21,7 @@ pub struct AdjointErrors {
 impl AdjointErrors {
     /// No errors.
     #[must_use]
-    pub fn none(robot: &Robot) -> Self {
+    pub fn zero(robot: &Robot) -> Self {
         AdjointErrors { eta: vec![Twist::zero(); robot.joints.len()], upsilon: Twist::zero() }
     }
 
@@ -30,7 +30,7 @@ impl AdjointErrors {
     pub fn apply(&self, nominal: &Robot) -> Robot {
         let mut screws: Vec<Screw> = nominal.joints.iter().map(|joint| joint.screw).collect();
         for (screw, eta) in screws.iter_mut().zip(&self.eta) {
-            *screw = screw.transformed(&Pose::exp(eta));
+            *screw = screw.transform(&Pose::exp(eta));
         }
         let mut robot = nominal.with_screws(&screws);
         robot.home = Pose::exp(&self.upsilon) * nominal.home;
@@ -40,7 +40,7 @@ impl AdjointErrors {
 
 /// The parts of the paper's matrix `A` at one configuration, in the base frame (theory.md §3 (8)).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Literal {
+pub struct PaperMatrix {
     /// `r_k`, lou2009 (8d): the screws as moved by the joints before.
     pub offset_columns: Vec<Vector6<f64>>,
     /// `Q_k`, lou2009 (8e): effect of a change of the six numbers of screw k.
@@ -51,7 +51,7 @@ pub struct Literal {
     pub motion: Pose,
 }
 
-impl Literal {
+impl PaperMatrix {
     /// The parts for a robot and its joint values (radians, metres; one a joint).
     #[must_use]
     pub fn new(robot: &Robot, values: &[f64]) -> Self {
@@ -65,15 +65,15 @@ impl Literal {
             before = before * Pose::exp(&turned);
         }
         let home_block = before.adjoint() * robot.home.log().left_jacobian();
-        Literal { offset_columns, screw_blocks, home_block, motion: before }
+        PaperMatrix { offset_columns, screw_blocks, home_block, motion: before }
     }
 }
 
-/// `dξ/dη` of lou2009 (18) for a nominal screw at error `η`: `-ad(Ad_exp(η) ξ^n) ∫ Ad_exp(η s) ds`
+/// `dξ/dη` of lou2009 (18) for a nominal screw at error `η`: `-adjoint_matrix(Ad_exp(η) ξ^n) ∫ Ad_exp(η s) ds`
 /// (theory.md §3 (10a)).
 #[must_use]
 pub fn screw_by_adjoint_error(nominal: &Screw, eta: &Twist) -> Matrix6<f64> {
-    -nominal.transformed(&Pose::exp(eta)).twist().ad() * eta.left_jacobian()
+    -nominal.transform(&Pose::exp(eta)).twist().adjoint_matrix() * eta.left_jacobian()
 }
 
 /// `[I  -P̂]` of lou2009 (23): motion of the point `P` by a twist of the base frame (metres; theory.md §3 (12a)).
@@ -100,13 +100,13 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
 pub fn jacobian(
     robot: &Robot,
     values: &[f64],
-    formulation: Formulation,
+    formulation: PaperFormulation,
     seen: MeasurementKind,
 ) -> DMatrix<f64> {
     if !formulation.has_free_screws() {
-        return adjoint_jacobian(robot, &AdjointErrors::none(robot), values, formulation.has_offsets(), seen);
+        return adjoint_jacobian(robot, &AdjointErrors::zero(robot), values, formulation.has_offsets(), seen);
     }
-    let literal = Literal::new(robot, values);
+    let literal = PaperMatrix::new(robot, values);
     let mut columns: Vec<Vector6<f64>> = Vec::new();
     for (joint, block) in robot.joints.iter().zip(&literal.screw_blocks) {
         let free = if joint.screw.is_prismatic() { 3 } else { 6 };
@@ -125,7 +125,7 @@ pub fn adjoint_jacobian(
     seen: MeasurementKind,
 ) -> DMatrix<f64> {
     let robot = errors.apply(nominal);
-    let literal = Literal::new(&robot, values);
+    let literal = PaperMatrix::new(&robot, values);
     let mut columns: Vec<Vector6<f64>> = Vec::new();
     for ((joint, eta), block) in nominal.joints.iter().zip(&errors.eta).zip(&literal.screw_blocks) {
         let by_eta = block * screw_by_adjoint_error(&joint.screw, eta);
@@ -138,7 +138,7 @@ pub fn adjoint_jacobian(
 /// Assembles the columns side by side: offsets, joints, and those of the tool.
 fn assemble(
     robot: &Robot,
-    literal: &Literal,
+    literal: &PaperMatrix,
     home: &Matrix6<f64>,
     joints: &[Vector6<f64>],
     offsets: bool,
@@ -165,10 +165,10 @@ fn assemble(
 /// The matrices of several configurations one below the other, lou2009 (10), with radians counted as `length_m` metres in rows and columns, so that
 /// singular values compare. A length of 1 leaves the numbers unchanged.
 #[must_use]
-pub fn stacked(
+pub fn stack_matrices(
     robot: &Robot,
     configurations: &[Vec<f64>],
-    formulation: Formulation,
+    formulation: PaperFormulation,
     seen: MeasurementKind,
     length_m: f64,
 ) -> DMatrix<f64> {
@@ -188,7 +188,12 @@ pub fn stacked(
 }
 
 /// Inverse metres per unit of each column's unknown: 1 for a length, `1 / length_m` for an angle or a direction.
-fn column_scales(robot: &Robot, formulation: Formulation, seen: MeasurementKind, length_m: f64) -> Vec<f64> {
+fn column_scales(
+    robot: &Robot,
+    formulation: PaperFormulation,
+    seen: MeasurementKind,
+    length_m: f64,
+) -> Vec<f64> {
     let turn = 1.0 / length_m;
     let twist = [1.0, 1.0, 1.0, turn, turn, turn];
     let mut scales = Vec::new();
@@ -230,8 +235,8 @@ mod tests {
 
     #[test]
     fn a_robot_without_errors_stays() {
-        let nominal = tables::nominal();
-        let same = AdjointErrors::none(&nominal).apply(&nominal);
+        let nominal = tables::nominal_robot();
+        let same = AdjointErrors::zero(&nominal).apply(&nominal);
         for (same, joint) in same.joints.iter().zip(&nominal.joints) {
             assert!((same.screw.twist().to_vector() - joint.screw.twist().to_vector()).norm() < 1e-15);
         }
@@ -239,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_motion_along_an_axis_does_not_move_it() {
-        let screw = tables::nominal().joints[0].screw;
+        let screw = tables::nominal_robot().joints[0].screw;
         let moved = screw_by_adjoint_error(&screw, &Twist::zero()) * screw.twist().to_vector();
         assert!(moved.norm() < 1e-15);
     }

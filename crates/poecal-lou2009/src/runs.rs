@@ -1,10 +1,10 @@
 //! The paper's calibrations from the nominal screws, with every formulation, traced by iteration.
 
-use super::constraints::{Watched, WatchedState};
-use super::seeds::{Purpose, derived};
+use super::constraints::{WatchedProblem, WatchedState};
+use super::seeds::{SeedPurpose, derive_seed};
 use super::session::PaperSession;
-use super::{Iteration, LENGTH_M, MeasurementKind, NOISE, Run, literal, tables};
-use crate::{Formulation, Residual, gauss_newton};
+use super::{ElbowRun, Iteration, LENGTH_M, MeasurementKind, NOISE, literal, tables};
+use crate::{PaperFormulation, PaperResidual, gauss_newton};
 use poecal_fit::problem::Problem;
 use poecal_fit::state::Estimate;
 use poecal_model::measurement::{Dataset, Noise, Quantity};
@@ -26,22 +26,22 @@ const NOISY_FACTOR: f64 = 10.0;
 
 /// Specification of a run.
 #[derive(Clone, Copy)]
-struct Plan {
-    formulation: Formulation,
+struct RunPlan {
+    formulation: PaperFormulation,
     seen: MeasurementKind,
     offsets_in_truth: bool,
     noise: bool,
 }
 
 /// A run, and its final estimate.
-pub(super) struct Ended {
-    pub(super) run: Run,
+pub(super) struct FinishedRun {
+    pub(super) run: ElbowRun,
     pub(super) estimate: Estimate,
 }
 
 /// The truth of the experiment: the prescribed screws and point, with joint offsets or without.
 pub(super) fn truth(offsets: bool) -> Estimate {
-    let robot = tables::prescribed();
+    let robot = tables::prescribed_robot();
     let mut truth = Estimate::new(&robot, vec![robot.home], poecal_arm::lie::Pose::identity());
     if offsets {
         truth = truth.with_offsets(&tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians));
@@ -50,13 +50,13 @@ pub(super) fn truth(offsets: bool) -> Estimate {
 }
 
 /// All runs: every formulation, poses and points, with and without offsets and noise.
-pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
+pub(super) fn runs(seed: u64) -> Result<Vec<FinishedRun>> {
     let mut runs = Vec::new();
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         for offsets_in_truth in [false, true] {
             for noise in [false, true] {
-                for formulation in Formulation::ALL {
-                    runs.push(run(Plan { formulation, seen, offsets_in_truth, noise }, seed)?);
+                for formulation in PaperFormulation::ALL {
+                    runs.push(run(RunPlan { formulation, seen, offsets_in_truth, noise }, seed)?);
                 }
             }
         }
@@ -70,25 +70,28 @@ pub(super) fn session(offsets_in_truth: bool, seen: MeasurementKind, seed: u64) 
         MeasurementKind::Poses => POSES,
         MeasurementKind::Points => POINTS,
     };
-    let seed = derived(seed, Purpose::Runs, 0);
-    PaperSession::new(&tables::nominal(), truth(offsets_in_truth), seen, count, seed)
+    let seed = derive_seed(seed, SeedPurpose::Runs, 0);
+    PaperSession::new(&tables::nominal_robot(), truth(offsets_in_truth), seen, count, seed)
 }
 
 /// One run by plain Gauss-Newton, with the paper's residual of poses.
-fn run(plan: Plan, seed: u64) -> Result<Ended> {
+fn run(plan: RunPlan, seed: u64) -> Result<FinishedRun> {
     let session = session(plan.offsets_in_truth, plan.seen, seed);
-    let measured =
-        if plan.noise { session.noisy(NOISE, derived(seed, Purpose::RunNoise, 0)) } else { session.exact() };
-    let data = session.data(Residual::Spatial, &measured)?;
+    let measured = if plan.noise {
+        session.noisy_poses(NOISE, derive_seed(seed, SeedPurpose::RunNoise, 0))
+    } else {
+        session.exact_poses()
+    };
+    let data = session.data(PaperResidual::Spatial, &measured)?;
     let sigma = if plan.noise { NOISE } else { Noise::new(1.0, 1.0) };
-    let free = session.free(plan.formulation);
+    let free = session.free_parameters(plan.formulation);
     let problem = Problem::new(session.session_with_data(&data, LENGTH_M), session.rows(), free, sigma);
     let once = Options { iterations: 1, ..Options::default() };
 
     let mut state = WatchedState::new(session.start());
     let mut trace = vec![iteration(&session, &data, &state.estimate)];
     let termination = loop {
-        let (next, _, summary) = gauss_newton(&Watched(&problem), state.clone(), &once);
+        let (next, _, summary) = gauss_newton(&WatchedProblem(&problem), state.clone(), &once);
         if summary.iterations == 0 || trace.len() > LIMIT {
             break summary.termination;
         }
@@ -99,24 +102,25 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
         }
     };
     let run = measures(&session, plan, &state, trace, (problem.layout().dim(), termination));
-    Ok(Ended { run, estimate: state.estimate })
+    Ok(FinishedRun { run, estimate: state.estimate })
 }
 
 /// Report of a run that ended.
 fn measures(
     session: &PaperSession,
-    plan: Plan,
+    plan: RunPlan,
     state: &WatchedState,
     trace: Vec<Iteration>,
     (unknowns, termination): (usize, Termination),
-) -> Run {
+) -> ElbowRun {
     let estimate = &state.estimate;
     let held_out_rms_m = session.held_out_rms_m(estimate);
     let most = if plan.noise { NOISY_FACTOR * NOISE[Quantity::Position] } else { REACHED_M };
     let matrix = matrix(session, estimate, plan.formulation);
     let error = ScrewError::from_estimates(estimate, &session.truth);
-    let equivalent = ScrewError::from_estimates(&estimate.without_offsets(), &session.truth.without_offsets());
-    Run {
+    let equivalent =
+        ScrewError::from_estimates(&estimate.without_offsets(), &session.truth.without_offsets());
+    ElbowRun {
         formulation: plan.formulation,
         measurement: plan.seen,
         offsets_in_truth: plan.offsets_in_truth,
@@ -128,10 +132,10 @@ fn measures(
         rank: literal::singular_values(&matrix).1,
         unknowns,
         held_out_rms_m,
-        screw_error_max: error.largest(),
+        screw_error_max: error.maximum(),
         screw_error_max_v_m: error.v_m,
         screw_error_max_omega: error.omega,
-        equivalent_screw_error_max: equivalent.largest(),
+        equivalent_screw_error_max: equivalent.maximum(),
         equivalent_screw_error_max_v_m: equivalent.v_m,
         equivalent_screw_error_max_omega: equivalent.omega,
         constraint_miss_pitch_m: state.miss.pitch_m,
@@ -150,7 +154,7 @@ fn iteration(session: &PaperSession, data: &Dataset, estimate: &Estimate) -> Ite
     let squares: f64 = errors.iter().map(|error| error.position_m().norm_squared()).sum();
     Iteration {
         residual_rms_m: (squares / errors.len() as f64).sqrt(),
-        screw_error_max: ScrewError::from_estimates(estimate, &session.truth).largest(),
+        screw_error_max: ScrewError::from_estimates(estimate, &session.truth).maximum(),
     }
 }
 
@@ -170,7 +174,7 @@ impl ScrewError {
         })
     }
 
-    fn largest(self) -> f64 {
+    fn maximum(self) -> f64 {
         self.v_m.max(self.omega)
     }
 }
@@ -186,7 +190,7 @@ fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
 pub(super) fn matrix(
     session: &PaperSession,
     estimate: &Estimate,
-    formulation: Formulation,
+    formulation: PaperFormulation,
 ) -> nalgebra::DMatrix<f64> {
     // Offsets belong to the joint values.
     let mut robot = session.nominal.with_screws(&estimate.screws());
@@ -196,5 +200,5 @@ pub(super) fn matrix(
         nominal.iter().zip(&estimate.offsets()).map(|(value, offset)| value + offset).collect()
     };
     let values: Vec<Vec<f64>> = (0..session.packed.rows()).map(values).collect();
-    literal::stacked(&robot, &values, formulation, session.seen, LENGTH_M)
+    literal::stack_matrices(&robot, &values, formulation, session.seen, LENGTH_M)
 }

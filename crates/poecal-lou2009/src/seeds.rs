@@ -2,7 +2,7 @@
 
 /// Purpose of a stream of random numbers.
 #[derive(Clone, Copy)]
-pub(super) enum Purpose {
+pub(super) enum SeedPurpose {
     /// Configurations of the runs.
     Runs,
     /// Noise of the runs.
@@ -18,7 +18,7 @@ pub(super) enum Purpose {
 }
 
 /// The seed of a stream: other purposes, indices and roots lead to unrelated ones.
-pub(super) fn derived(root: u64, purpose: Purpose, index: u64) -> u64 {
+pub(super) fn derive_seed(root: u64, purpose: SeedPurpose, index: u64) -> u64 {
     mix(mix(mix(root) ^ purpose as u64) ^ index)
 }
 
@@ -44,16 +44,16 @@ mod tests {
     #[test]
     fn no_two_streams_have_the_same_seed() {
         let purposes = [
-            Purpose::Runs,
-            Purpose::RunNoise,
-            Purpose::Fits,
-            Purpose::FitNoise,
-            Purpose::Truth,
-            Purpose::TruthRows,
+            SeedPurpose::Runs,
+            SeedPurpose::RunNoise,
+            SeedPurpose::Fits,
+            SeedPurpose::FitNoise,
+            SeedPurpose::Truth,
+            SeedPurpose::TruthRows,
         ];
         let mut seeds: Vec<u64> = (0..20)
             .flat_map(|root| purposes.map(|purpose| (root, purpose)))
-            .flat_map(|(root, purpose)| (0..100).map(move |index| derived(root, purpose, index)))
+            .flat_map(|(root, purpose)| (0..100).map(move |index| derive_seed(root, purpose, index)))
             .collect();
         let count = seeds.len();
         seeds.sort_unstable();

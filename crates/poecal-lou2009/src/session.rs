@@ -4,11 +4,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::MeasurementKind;
-use crate::{Formulation, Residual};
+use crate::{PaperFormulation, PaperResidual};
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_fit::parameters::{Parameter, TargetFrame, TargetPlace};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::{random, random_configuration};
@@ -23,8 +23,8 @@ pub(super) struct PaperSession {
     pub(super) truth: Estimate,
     pub(super) seen: MeasurementKind,
     pub(super) readings: Vec<f64>,
-    pub(super) packed: Packed,
-    pub(super) unseen: Packed,
+    pub(super) packed: PackedValues,
+    pub(super) unseen: PackedValues,
     /// True positions of the tip in the unseen configurations.
     unseen_positions: Vec<Vector3<f64>>,
 }
@@ -43,8 +43,8 @@ impl PaperSession {
         };
         let readings = configurations(count);
         let width = nominal.joints.len();
-        let packed = Packed::new(nominal, &readings, width);
-        let unseen = Packed::new(nominal, &configurations(UNSEEN), width);
+        let packed = PackedValues::new(nominal, &readings, width);
+        let unseen = PackedValues::new(nominal, &configurations(UNSEEN), width);
         let unseen_positions = poses(&truth, &unseen).map(|pose| pose.translation).collect();
         PaperSession { nominal: nominal.clone(), truth, seen, readings, packed, unseen, unseen_positions }
     }
@@ -55,12 +55,12 @@ impl PaperSession {
     }
 
     /// The target's poses in the measured configurations.
-    pub(super) fn exact(&self) -> Vec<Pose> {
+    pub(super) fn exact_poses(&self) -> Vec<Pose> {
         poses(&self.truth, &self.packed).collect()
     }
 
     /// Poses with noise drawn from a seed.
-    pub(super) fn noisy(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
+    pub(super) fn noisy_poses(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let measured = |pose: Pose| {
             let position =
@@ -72,7 +72,7 @@ impl PaperSession {
     }
 
     /// Measurements of these poses by the device.
-    pub(super) fn data(&self, residual: Residual, measured: &[Pose]) -> Result<Dataset> {
+    pub(super) fn data(&self, residual: PaperResidual, measured: &[Pose]) -> Result<Dataset> {
         let mut data = Dataset::new(self.nominal.reading_names());
         for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
             let measurement = match self.seen {
@@ -96,7 +96,7 @@ impl PaperSession {
     }
 
     /// The unknowns of a formulation.
-    pub(super) fn free(&self, formulation: Formulation) -> Vec<Parameter> {
+    pub(super) fn free_parameters(&self, formulation: PaperFormulation) -> Vec<Parameter> {
         let mut free = formulation.joint_parameters(self.truth.kinds());
         free.push(match self.seen {
             MeasurementKind::Poses => Parameter::TargetFrame(TargetFrame::new(0)),
@@ -114,8 +114,8 @@ impl PaperSession {
 }
 
 /// An estimate's target in configurations.
-fn poses(estimate: &Estimate, packed: &Packed) -> impl Iterator<Item = Pose> {
-    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+fn poses(estimate: &Estimate, packed: &PackedValues) -> impl Iterator<Item = Pose> {
+    let (linkage, mut chain) = (Linkage::new(estimate), RowChain::default());
     (0..packed.rows()).map(move |row| {
         chain.evaluate(&linkage, packed, row, 0);
         chain.target

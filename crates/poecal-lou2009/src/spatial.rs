@@ -11,13 +11,13 @@ use poecal_model::measurement::{PoseResidual, Sensitivity};
 /// `(y - p) + p × r`, so rotation noise counts as position noise times the distance. [`poecal_model::measurement::Measurement`] has the form of a
 /// device's data sheet; this form serves comparison (docs/theory.md §4 (16a)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Spatial;
+pub struct SpatialResidual;
 
 fn error(measured: &Pose, predicted: &Pose) -> Twist {
     (*measured * predicted.inverse()).log()
 }
 
-impl PoseResidual for Spatial {
+impl PoseResidual for SpatialResidual {
     fn name(&self) -> &'static str {
         "spatial"
     }

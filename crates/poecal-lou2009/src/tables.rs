@@ -35,25 +35,25 @@ pub fn printed_screws() -> [Twist; 6] {
 /// The robot before calibration: screws and point of Table II, left, and ranges of Table I. Its home pose has no rotation, and its
 /// translation is the point `P_c0`.
 #[must_use]
-pub fn nominal() -> Robot {
+pub fn nominal_robot() -> Robot {
     simulate::elbow()
 }
 
 /// The robot to be identified: the printed screws, each made a screw as by [`Screw::project`] (theory.md §5 (22c)), and the printed point as home
 /// pose without rotation.
 #[must_use]
-pub fn prescribed() -> Robot {
+pub fn prescribed_robot() -> Robot {
     // The axis along ω through its point nearest to the origin.
     let screws =
         printed_screws().map(|it| Screw::revolute(&it.w, &(it.w.cross(&it.v) / it.w.norm_squared())));
-    let mut robot = nominal().with_screws(&screws);
+    let mut robot = nominal_robot().with_screws(&screws);
     robot.home = Pose::from_translation(Vector3::from(PRESCRIBED_POINT_MM) / 1000.0);
     robot
 }
 
 /// Violation of the constraints of a revolute screw by the printed screws.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounding {
+pub struct PrintedRounding {
     /// Largest `|v·ω|`, millimetres.
     pub pitch_mm: f64,
     /// Largest `||ω| - 1|`.
@@ -62,9 +62,9 @@ pub struct Rounding {
 
 /// Violation of the screw constraints in Table II due to four decimals.
 #[must_use]
-pub fn rounding() -> Rounding {
+pub fn rounding() -> PrintedRounding {
     let largest = |miss: fn(&Twist) -> f64| printed_screws().iter().map(miss).fold(0.0, f64::max);
-    Rounding {
+    PrintedRounding {
         pitch_mm: largest(|screw| 1000.0 * screw.v.dot(&screw.w).abs()),
         length: largest(|screw| (screw.w.norm() - 1.0).abs()),
     }
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn table_is_the_simulated_elbow() {
-        let robot = nominal();
+        let robot = nominal_robot();
         for ((joint, screw), range) in robot.joints.iter().zip(NOMINAL_SCREWS_MM).zip(RANGES_DEG) {
             let (v, w) = (joint.screw.v() * 1000.0, joint.screw.w());
             let difference = Vector6::from(screw) - Twist::new(v, w).to_vector();
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn prescribed_screws_are_the_printed_ones_but_for_rounding() {
-        let robot = prescribed();
+        let robot = prescribed_robot();
         let rounding = rounding();
         println!("|v·ω| up to {:.4} mm, ||ω| - 1| up to {:.1e}", rounding.pitch_mm, rounding.length);
         assert!((rounding.pitch_mm - 0.0319).abs() < 1e-4 && (rounding.length - 4.4e-5).abs() < 1e-6);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use crate::text::visible;
+use crate::text::escape_invisible;
 
 /// Kind of an error, as a word that does not change between versions.
 ///
@@ -56,7 +56,7 @@ impl ErrorKind {
 
 /// Place in a file: line and column count from 1, a column in characters.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct FilePosition {
     /// The file, as the user named it.
     pub path: PathBuf,
     /// Line, from 1.
@@ -65,9 +65,9 @@ pub struct Place {
     pub column: Option<usize>,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&visible(&self.path.display().to_string()))?;
+        f.write_str(&escape_invisible(&self.path.display().to_string()))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
             if let Some(column) = self.column {
@@ -85,17 +85,17 @@ impl fmt::Display for Place {
 /// #     pub use poecal_numerics::error::{Error, ErrorKind};
 /// # }
 /// use poecal::{Error, ErrorKind};
-/// let error = Error::new(ErrorKind::Unit, "found unit `inch`, expected a length (m, cm, mm, um)").at("points.csv", 1, 14);
+/// let error = Error::new(ErrorKind::Unit, "found unit `inch`, expected a length (m, cm, mm, um)").at_position("points.csv", 1, 14);
 /// assert_eq!(error.to_string(), "points.csv:1:14: found unit `inch`, expected a length (m, cm, mm, um)");
 /// assert_eq!(error.kind(), ErrorKind::Unit);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Error(Box<Inner>);
+pub struct Error(Box<ErrorData>);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Inner {
+struct ErrorData {
     kind: ErrorKind,
-    place: Option<Place>,
+    place: Option<FilePosition>,
     message: String,
     choices: Option<Choices>,
     missing: Option<MissingColumn>,
@@ -137,10 +137,10 @@ impl Error {
     /// out, so that it is one line and moves no terminal's cursor.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let message = with_names_shown(message.into());
-        Error(Box::new(Inner {
+        Error(Box::new(ErrorData {
             kind,
             place: None,
-            message: visible(&message).into_owned(),
+            message: escape_invisible(&message).into_owned(),
             choices: None,
             missing: None,
         }))
@@ -148,22 +148,23 @@ impl Error {
 
     /// The same error at a line and column (both from 1) of a file.
     #[must_use]
-    pub fn at(mut self, path: impl AsRef<Path>, line: usize, column: usize) -> Self {
+    pub fn at_position(mut self, path: impl AsRef<Path>, line: usize, column: usize) -> Self {
         self.0.place =
-            Some(Place { path: path.as_ref().to_path_buf(), line: Some(line), column: Some(column) });
+            Some(FilePosition { path: path.as_ref().to_path_buf(), line: Some(line), column: Some(column) });
         self
     }
 
     /// The same error at a byte offset of a file's text.
     pub fn at_offset(self, path: &Path, text: &str, offset: usize) -> Self {
         let (line, column) = position(text, offset);
-        self.at(path, line, column)
+        self.at_position(path, line, column)
     }
 
     /// The same error at a line (from 1) of a file.
     #[must_use]
     pub fn at_line(mut self, path: impl AsRef<Path>, line: usize) -> Self {
-        self.0.place = Some(Place { path: path.as_ref().to_path_buf(), line: Some(line), column: None });
+        self.0.place =
+            Some(FilePosition { path: path.as_ref().to_path_buf(), line: Some(line), column: None });
         self
     }
 
@@ -171,7 +172,7 @@ impl Error {
     #[must_use]
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
         if self.0.place.is_none() {
-            self.0.place = Some(Place { path: path.as_ref().to_path_buf(), line: None, column: None });
+            self.0.place = Some(FilePosition { path: path.as_ref().to_path_buf(), line: None, column: None });
         }
         self
     }
@@ -195,7 +196,7 @@ impl Error {
     /// The same error, with an addition.
     pub fn with_more(mut self, more: &str) -> Self {
         self.0.message.push_str("; ");
-        self.0.message.push_str(&visible(more));
+        self.0.message.push_str(&escape_invisible(more));
         self
     }
 
@@ -213,12 +214,12 @@ impl Error {
 
     /// The same error, with the content of its column, if one is missing.
     pub fn if_missing(self, column: MissingColumn) -> Self {
-        if self.missing().is_some() { self.of_missing(column) } else { self }
+        if self.missing_column().is_some() { self.of_missing(column) } else { self }
     }
 
     /// Content of a missing column, if one is missing.
     #[must_use]
-    pub fn missing(&self) -> Option<MissingColumn> {
+    pub fn missing_column(&self) -> Option<MissingColumn> {
         self.0.missing
     }
 
@@ -236,7 +237,7 @@ impl Error {
 
     /// Place of the error, if it is in a file.
     #[must_use]
-    pub fn place(&self) -> Option<&Place> {
+    pub fn place(&self) -> Option<&FilePosition> {
         self.0.place.as_ref()
     }
 
@@ -284,7 +285,7 @@ const LONGEST_COMPARED: usize = 64;
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Candidate nearest to `word` by edit distance, for "did you mean"; `None` if each differs by more than half of the word.
-pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest_word<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let letters = letters(word)?;
     let furthest = (letters / 2).max(1);
     let distances = candidates.into_iter().filter_map(|candidate| {
@@ -296,28 +297,29 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 
 /// Words of a message about the names that `word` could have been: the nearest, or else the first few.
 pub fn nearest_or_all(word: &str, candidates: &[&str]) -> String {
-    match nearest(word, candidates.iter().copied()) {
+    match nearest_word(word, candidates.iter().copied()) {
         Some(near) => format!("the nearest is `{near}`"),
         None if candidates.is_empty() => "but there is none".to_owned(),
         None => format!("there are {}", first_few(candidates)),
     }
 }
 
-/// The names, or the first of many, each as [`shown`].
+/// The names, or the first of many, each as [`shorten_name`].
 pub fn first_few<T: AsRef<str>>(names: &[T]) -> String {
-    let first: Vec<Cow<'_, str>> = names.iter().take(NAMES_LISTED).map(|name| shown(name.as_ref())).collect();
+    let first: Vec<Cow<'_, str>> =
+        names.iter().take(NAMES_LISTED).map(|name| shorten_name(name.as_ref())).collect();
     format!("{}{}", first.join(", "), if names.len() > NAMES_LISTED { ", …" } else { "" })
 }
 
 /// A name as in messages and tables: only the beginning if it is very long.
-pub fn shown(name: &str) -> Cow<'_, str> {
+pub fn shorten_name(name: &str) -> Cow<'_, str> {
     match (name.char_indices().nth(NAME_SHOWN), name.char_indices().nth(LONG_NAME)) {
         (Some((end, _)), Some(_)) => Cow::Owned(format!("{}…", name.get(..end).unwrap_or_default())),
         _ => Cow::Borrowed(name),
     }
 }
 
-/// A message with each name in backticks as [`shown`]: a file may choose any names.
+/// A message with each name in backticks as [`shorten_name`]: a file may choose any names.
 fn with_names_shown(message: String) -> String {
     if message.len() <= LONG_NAME {
         return message;
@@ -329,7 +331,11 @@ fn with_names_shown(message: String) -> String {
 /// Words between two names stay unchanged; they have spaces, and are not as long as a name in a file may be.
 fn shown_unless_a_sentence(part: &str) -> Cow<'_, str> {
     const LONGEST_SENTENCE: usize = 4000;
-    if part.contains(' ') && part.len() <= LONGEST_SENTENCE { Cow::Borrowed(part) } else { shown(part) }
+    if part.contains(' ') && part.len() <= LONGEST_SENTENCE {
+        Cow::Borrowed(part)
+    } else {
+        shorten_name(part)
+    }
 }
 
 /// Number of letters of a word that is short enough to be compared.
@@ -358,8 +364,8 @@ mod tests {
     fn names_of_a_million_letters_are_neither_compared_nor_shown() {
         let long = "j".repeat(1_000_000);
         let longer = format!("{long}k");
-        assert_eq!(nearest(&long, [longer.as_str(), "joint1"]), None);
-        assert_eq!(nearest("joint2", [longer.as_str(), "joint1"]), Some("joint1"));
+        assert_eq!(nearest_word(&long, [longer.as_str(), "joint1"]), None);
+        assert_eq!(nearest_word("joint2", [longer.as_str(), "joint1"]), Some("joint1"));
         let start = format!("{}…", "j".repeat(60));
         assert_eq!(first_few(&[&long, "joint1"]), format!("{start}, joint1"));
         let error = Error::new(ErrorKind::Model, format!("found `{long}`, expected `{longer}`"));
@@ -372,8 +378,8 @@ mod tests {
     fn what_a_message_says_is_not_cut() {
         let sentence = "found `joint` in the file, expected a number of some kind; ".repeat(20);
         assert_eq!(Error::new(ErrorKind::Model, sentence.clone()).message(), sentence);
-        assert_eq!(shown(&"é".repeat(120)), "é".repeat(120));
-        assert_eq!(shown(&"é".repeat(121)), format!("{}…", "é".repeat(60)));
+        assert_eq!(shorten_name(&"é".repeat(120)), "é".repeat(120));
+        assert_eq!(shorten_name(&"é".repeat(121)), format!("{}…", "é".repeat(60)));
     }
 
     #[test]
@@ -392,14 +398,15 @@ mod tests {
 
     #[test]
     fn an_error_is_one_line_whatever_it_quotes() {
-        let error = Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at("a\nb.csv", 1, 2);
+        let error =
+            Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at_position("a\nb.csv", 1, 2);
         assert_eq!(error.to_string(), r"a\u{a}b.csv:1:2: found `a\u{d}\u{a}\u{1b}[2J\u{2028}\u{9}µ`");
     }
 
     #[test]
     fn a_word_too_far_from_all_has_no_nearest() {
-        assert_eq!(nearest("jiont1", ["joint1", "joint2", "x"]), Some("joint1"));
-        assert_eq!(nearest("jiont1", ["x", "temperature"]), None);
+        assert_eq!(nearest_word("jiont1", ["joint1", "joint2", "x"]), Some("joint1"));
+        assert_eq!(nearest_word("jiont1", ["x", "temperature"]), None);
     }
 
     #[test]

@@ -52,7 +52,7 @@ pub fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]) {
 /// Cholesky factor of the symmetric matrix with this upper triangle plus `damping` on the diagonal; `None` if that is not positive
 /// definite.
 pub fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
-    lanes::cholesky(SimdLevel::best(), upper, n, damping)
+    lanes::cholesky(SimdLevel::best_level(), upper, n, damping)
 }
 
 /// Cholesky factor of the information of a rigid motion.
@@ -71,7 +71,7 @@ pub fn inverse_6(matrix: Matrix6<f64>) -> Option<Matrix6<f64>> {
 /// Solves `L Lᵀ x = b`.
 pub fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
-    lanes::solve(SimdLevel::best(), factor, &mut x);
+    lanes::solve(SimdLevel::best_level(), factor, &mut x);
     x
 }
 
@@ -87,11 +87,11 @@ pub fn trace_of_quotient(factor: &Factor, part: &[f64], n: usize) -> f64 {
 
 /// The inverse (row-major) of the matrix that was factorised.
 pub fn inverse(factor: &Factor) -> Vec<f64> {
-    lanes::inverse(SimdLevel::best(), factor)
+    lanes::inverse(SimdLevel::best_level(), factor)
 }
 
 /// `A⁻¹ b` of a symmetric matrix; `None` unless it is positive definite.
-pub fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+pub fn solve_symmetric(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     Some(Cholesky::new(matrix)?.solve(right))
 }
 
@@ -109,7 +109,7 @@ pub fn solved_and_whitened(
 }
 
 /// `L⁻¹ C` of columns, with a covariance `L Lᵀ`: rows in units in which the covariance is 1. `None` unless it is positive definite.
-pub fn whitened(covariance: DMatrix<f64>, columns: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+pub fn whiten_columns(covariance: DMatrix<f64>, columns: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     Cholesky::new(covariance)?.l_dirty().solve_lower_triangular(columns)
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
-use crate::error::{ErrorKind, Result, nearest};
+use crate::error::{ErrorKind, Result, nearest_word};
 use crate::unit::Unit;
 
 /// Source of a column's unit.
@@ -99,13 +99,13 @@ impl NamedUnit {
 
     /// As [`NamedUnit::parse`]; `purpose` (` for …`) describes the unit's use in the message.
     pub fn parse_for(symbol: &str, of: Unit, purpose: &str) -> Result<NamedUnit> {
-        let plain = plain(symbol);
+        let plain = plain_symbol(symbol);
         if let Some(unit) = units_of(of).find(|unit| unit.symbol == plain) {
             return Ok(*unit);
         }
         let symbols: Vec<&str> = units_of(of).map(|unit| unit.symbol).collect();
         let known_elsewhere = UNITS.iter().any(|unit| unit.symbol == plain);
-        let hint = match nearest(plain, symbols.iter().copied()) {
+        let hint = match nearest_word(plain, symbols.iter().copied()) {
             Some(near) if !known_elsewhere && near.eq_ignore_ascii_case(plain) => {
                 format!("; did you mean `{near}`?")
             }
@@ -155,7 +155,7 @@ impl NamedUnit {
 }
 
 /// Symbol for any name of a unit.
-fn plain(name: &str) -> &str {
+fn plain_symbol(name: &str) -> &str {
     let is_named =
         |unit: &&NamedUnit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
     match name {

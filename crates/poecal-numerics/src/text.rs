@@ -47,7 +47,7 @@ impl FromIterator<usize> for NamedLines {
 /// The text with every character that would act instead of being visible written as its number. These are control characters, line
 /// breaks among them, marks of writing direction, and characters without width.
 #[must_use]
-pub fn visible(text: &str) -> Cow<'_, str> {
+pub fn escape_invisible(text: &str) -> Cow<'_, str> {
     made_visible(text, acts)
 }
 
@@ -127,10 +127,10 @@ mod tests {
             acting.into_iter().chain(['\u{2028}', '\u{2066}', '\u{2069}', '\u{feff}', '\u{ad}', '\u{e0041}'])
         {
             let text = format!("a{c}b");
-            assert_eq!(visible(&text), format!("a\\u{{{:x}}}b", u32::from(c)));
+            assert_eq!(escape_invisible(&text), format!("a\\u{{{:x}}}b", u32::from(c)));
         }
         for plain in ["", "a b", "Ärger", "关节", "مفصل", "θ₁ é ° µ €", "a\\b", "🤖"] {
-            assert!(matches!(visible(plain), Cow::Borrowed(_)), "{plain}");
+            assert!(matches!(escape_invisible(plain), Cow::Borrowed(_)), "{plain}");
         }
         assert_eq!(visible_lines("a\nb\u{85}"), "a\nb\\u{85}");
     }
@@ -138,9 +138,9 @@ mod tests {
     #[test]
     fn no_character_gets_through_that_acts() {
         let all: String = (0..=u32::from(char::MAX)).filter_map(char::from_u32).collect();
-        let shown = visible(&all);
+        let shown = escape_invisible(&all);
         assert!(!shown.chars().any(acts));
-        assert_eq!(visible(&shown), shown);
+        assert_eq!(escape_invisible(&shown), shown);
     }
 
     #[test]

@@ -36,7 +36,10 @@ pub fn map_parts_of<T: Send>(items: usize, count: usize, part: impl Fn(usize) ->
 }
 
 /// Results of two pieces of work, done in parallel if there are several threads.
-pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
+pub fn run_both<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
     if rayon::current_num_threads() > 1 { rayon::join(first, second) } else { (first(), second()) }
 }
 

@@ -16,7 +16,7 @@ pub enum Unit {
 impl Unit {
     /// A number in the unit of messages.
     #[must_use]
-    pub fn shown(self, si: f64) -> f64 {
+    pub fn in_shown_unit(self, si: f64) -> f64 {
         match self {
             Unit::Metre | Unit::Second => si * 1e3,
             Unit::Radian => si.to_degrees(),
@@ -67,7 +67,7 @@ mod tests {
             (Unit::Radian, std::f64::consts::PI, 180.0, "deg"),
             (Unit::One, 0.3, 0.3, ""),
         ] {
-            assert_eq!((unit.shown(si), unit.from_shown(shown), unit.symbol()), (shown, si, symbol));
+            assert_eq!((unit.in_shown_unit(si), unit.from_shown(shown), unit.symbol()), (shown, si, symbol));
         }
     }
 }

@@ -9,7 +9,7 @@ pub(crate) const OTHER_EXTERNAL: &str =
 
 /// The readings of the robot, in the order in which languages count axes.
 #[derive(Clone, Debug, Default)]
-pub struct Axes {
+pub struct ControllerAxes {
     /// Names of the readings.
     pub names: Vec<String>,
     /// True for each reading of a prismatic joint.
@@ -19,7 +19,7 @@ pub struct Axes {
     pub external: Vec<usize>,
 }
 
-impl Axes {
+impl ControllerAxes {
     /// The readings of a robot, without factors.
     pub fn from_robot(robot: &Robot) -> Self {
         let slides = |name: &String| {
@@ -30,7 +30,7 @@ impl Axes {
         let slides: Vec<bool> = names.iter().map(slides).collect();
         let sliding: Vec<usize> = (0..names.len()).filter(|&it| slides[it]).collect();
         let is_arm = names.len() - sliding.len() == 6;
-        Axes { names, slides, external: if is_arm { sliding } else { Vec::new() } }
+        ControllerAxes { names, slides, external: if is_arm { sliding } else { Vec::new() } }
     }
 
     /// Number of the readings.
@@ -40,7 +40,7 @@ impl Axes {
 
     /// The six readings of the arm, and those of external axes, in the order of the robot's readings; `None` if there are too few. A robot without
     /// external axes has only the arm's readings.
-    pub(crate) fn joined<T: Clone>(&self, arm: &[T], external: &[T]) -> Option<Vec<T>> {
+    pub(crate) fn join_readings<T: Clone>(&self, arm: &[T], external: &[T]) -> Option<Vec<T>> {
         if self.external.is_empty() {
             return Some(arm.to_vec());
         }

@@ -2,18 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::flow::Node;
+use super::flow::FlowNode;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
 /// A program in its blocks, during and after reading.
 #[derive(Clone, Debug)]
-pub(crate) struct Blocks<S> {
+pub(crate) struct ProgramBlocks<S> {
     /// Open blocks, each with the nodes of its parent.
-    open: Vec<(Block<S>, Vec<Node<S>>)>,
-    nodes: Vec<Node<S>>,
+    open: Vec<(OpenBlock<S>, Vec<FlowNode<S>>)>,
+    nodes: Vec<FlowNode<S>>,
     /// Routines of the program by name.
-    pub(crate) routines: BTreeMap<String, Vec<Node<S>>>,
+    pub(crate) routines: BTreeMap<String, Vec<FlowNode<S>>>,
     /// Names that are called.
     pub(crate) called: BTreeSet<String>,
     /// Number of nodes.
@@ -21,16 +21,16 @@ pub(crate) struct Blocks<S> {
 }
 
 #[derive(Clone, Debug)]
-enum Block<S> {
+enum OpenBlock<S> {
     Routine(String),
     Loop,
     /// Complete arms, and true if there is one for all other cases.
-    Branch(Vec<Vec<Node<S>>>, bool),
+    Branch(Vec<Vec<FlowNode<S>>>, bool),
 }
 
-impl<S> Blocks<S> {
+impl<S> ProgramBlocks<S> {
     pub(crate) fn new() -> Self {
-        Blocks {
+        ProgramBlocks {
             open: Vec::new(),
             nodes: Vec::new(),
             routines: BTreeMap::new(),
@@ -45,9 +45,9 @@ impl<S> Blocks<S> {
     }
 
     /// Adds nodes at the present position.
-    pub(crate) fn push(&mut self, nodes: impl IntoIterator<Item = Node<S>>) {
+    pub(crate) fn push(&mut self, nodes: impl IntoIterator<Item = FlowNode<S>>) {
         for node in nodes {
-            if let Node::Call(name) = &node
+            if let FlowNode::Call(name) = &node
                 && !self.called.contains(name)
             {
                 self.called.insert(name.clone());
@@ -57,9 +57,9 @@ impl<S> Blocks<S> {
         }
     }
 
-    fn begin(&mut self, block: Block<S>, line: usize) -> Result<()> {
-        if self.open.len() >= Limit::Nesting.most_held() {
-            let message = Limit::Nesting.exceeded("blocks in each other");
+    fn begin(&mut self, block: OpenBlock<S>, line: usize) -> Result<()> {
+        if self.open.len() >= ResourceLimit::Nesting.most_held() {
+            let message = ResourceLimit::Nesting.exceeded_error("blocks in each other");
             return Err(ErrorKind::Syntax.error(message).at_line("program", line));
         }
         self.size += 1;
@@ -69,22 +69,22 @@ impl<S> Blocks<S> {
 
     /// Begins a routine.
     pub(crate) fn begin_routine(&mut self, name: &str, line: usize) -> Result<()> {
-        self.begin(Block::Routine(name.to_owned()), line)
+        self.begin(OpenBlock::Routine(name.to_owned()), line)
     }
 
     /// Begins a loop.
     pub(crate) fn begin_loop(&mut self, line: usize) -> Result<()> {
-        self.begin(Block::Loop, line)
+        self.begin(OpenBlock::Loop, line)
     }
 
     /// Begins a branch with its first arm.
     pub(crate) fn begin_branch(&mut self, line: usize) -> Result<()> {
-        self.begin(Block::Branch(Vec::new(), false), line)
+        self.begin(OpenBlock::Branch(Vec::new(), false), line)
     }
 
     /// Begins another arm of the branch, possibly the one for all other cases.
     pub(crate) fn arm(&mut self, is_else: bool) {
-        if let Some((Block::Branch(arms, has_else), _)) = self.open.last_mut() {
+        if let Some((OpenBlock::Branch(arms, has_else), _)) = self.open.last_mut() {
             arms.push(std::mem::take(&mut self.nodes));
             *has_else |= is_else;
         }
@@ -95,22 +95,22 @@ impl<S> Blocks<S> {
         let Some((block, around)) = self.open.pop() else { return };
         let inside = std::mem::replace(&mut self.nodes, around);
         match block {
-            Block::Loop => self.nodes.push(Node::Loop(inside)),
-            Block::Branch(mut arms, has_else) => {
+            OpenBlock::Loop => self.nodes.push(FlowNode::Loop(inside)),
+            OpenBlock::Branch(mut arms, has_else) => {
                 arms.push(inside);
                 if !has_else {
                     arms.push(Vec::new());
                 }
-                self.nodes.push(Node::Either(arms));
+                self.nodes.push(FlowNode::Either(arms));
             }
-            Block::Routine(name) => {
+            OpenBlock::Routine(name) => {
                 self.routines.entry(name).or_default().extend(inside);
             }
         }
     }
 
     /// Ends the text: closes open blocks, and returns the nodes outside of routines.
-    pub(crate) fn finish(&mut self) -> Vec<Node<S>> {
+    pub(crate) fn finish(&mut self) -> Vec<FlowNode<S>> {
         while !self.open.is_empty() {
             self.end();
         }

@@ -3,7 +3,7 @@
 //! This crate is a part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package. Its interface follows their needs
 //! and promises nothing by itself.
 //!
-//! Each language has a folder. `scan.rs` has the tokens of all languages, `flow.rs` follows calls, branches and loops, [`parsed`] is the common
+//! Each language has a folder. `scan.rs` has the tokens of all languages, `flow.rs` follows calls, branches and loops, [`parsed_program`] is the common
 //! result, for files of joint readings (`poecal-import`) and for corrections (`poecal-compensate`).
 //!
 //! Other crates have files, corrections, and kinematics beyond a language's words for configurations.
@@ -15,36 +15,41 @@ mod build;
 mod fanuc;
 mod flow;
 pub mod forms;
-mod given;
 mod krl;
 mod language;
-mod listed;
 pub(crate) mod number;
-pub mod parsed;
+pub mod parsed_program;
 mod posture;
 mod rapid;
 pub(crate) mod scan;
 mod shape;
-pub mod stated;
+pub mod stated_configuration;
+mod stated_frames;
+mod unchanged_statements;
 mod urscript;
 
-use axes::Axes;
-use parsed::{Meant, Parsed};
+use axes::ControllerAxes;
+use parsed_program::{ParsedProgram, PoseMeaning};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
-pub use given::Given;
 pub use language::Language;
-pub use listed::Listed;
+pub use stated_frames::StatedFrames;
+pub use unchanged_statements::UnchangedStatement;
 
 /// The targets of a program and its motions.
 ///
 /// # Errors
 /// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks nested more deeply than
-/// [`Limit::Nesting`]; [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it is larger than [`Limit::Program`].
-pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
-    Limit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
+/// [`ResourceLimit::Nesting`]; [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it is larger than [`ResourceLimit::Program`].
+pub fn parse(
+    language: Language,
+    text: &[u8],
+    given: &StatedFrames,
+    axes: &ControllerAxes,
+) -> Result<ParsedProgram> {
+    ResourceLimit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
     scan::refuse_nested(text, rules(language))?;
     match language {
         Language::UrScript => urscript::parse(text, given, axes),
@@ -55,7 +60,7 @@ pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Res
 }
 
 /// Syntax of a language.
-fn rules(language: Language) -> &'static scan::Rules {
+fn rules(language: Language) -> &'static scan::LexicalRules {
     match language {
         Language::UrScript => &urscript::RULES,
         Language::Krl => &krl::RULES,
@@ -72,7 +77,7 @@ pub struct JointTargets {
     /// Lines of targets that are poses.
     pub poses: Vec<usize>,
     /// Targets that are not known, with reasons.
-    pub listed: Vec<Listed>,
+    pub listed: Vec<UnchangedStatement>,
 }
 
 /// The joint targets of a program of a robot.
@@ -80,15 +85,16 @@ pub struct JointTargets {
 /// # Errors
 /// Those of [`parse`].
 pub fn joint_targets(language: Language, text: &[u8], robot: &Robot) -> Result<JointTargets> {
-    let parsed = parse(language, text, &Given::default(), &Axes::from_robot(robot))?;
-    let is_joints = |at: &usize| parsed.targets.get(*at).is_some_and(|it| it.meant == Meant::Joints);
+    let parsed = parse(language, text, &StatedFrames::default(), &ControllerAxes::from_robot(robot))?;
+    let is_joints = |at: &usize| parsed.targets.get(*at).is_some_and(|it| it.meant == PoseMeaning::Joints);
     let moved: Vec<usize> = parsed.motions.iter().map(|it| it.target).filter(is_joints).collect();
     let all: Vec<usize> = (0..parsed.targets.len()).filter(is_joints).collect();
     let order = if moved.is_empty() { all } else { moved };
     let of = |at: usize| {
         let target = parsed.targets.get(at)?;
-        Some((target.line, target.name.clone(), target.scaled()))
+        Some((target.line, target.name.clone(), target.scaled_numbers()))
     };
-    let poses = parsed.targets.iter().filter(|it| it.meant != Meant::Joints).map(|it| it.line).collect();
+    let poses =
+        parsed.targets.iter().filter(|it| it.meant != PoseMeaning::Joints).map(|it| it.line).collect();
     Ok(JointTargets { targets: order.into_iter().filter_map(of).collect(), poses, listed: parsed.listed })
 }

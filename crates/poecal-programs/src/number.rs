@@ -17,7 +17,7 @@ pub struct Number {
 
 impl Number {
     /// The value in the unit of its target.
-    pub(crate) fn scaled(&self) -> f64 {
+    pub(crate) fn scaled_value(&self) -> f64 {
         self.value * self.scale
     }
 }

@@ -13,7 +13,7 @@ const ASIDE: f64 = 0.005;
 const MEET: f64 = 1e-3;
 
 /// An axis: a point on it, and its direction.
-type Axis = (Vector3<f64>, Vector3<f64>);
+type AxisLine = (Vector3<f64>, Vector3<f64>);
 
 /// An arm in the makers' zero configuration at readings 0: lower arm upright, forearm horizontal and to the front, wrist straight. Front, elbow and
 /// wrist are only defined for such an arm.
@@ -36,7 +36,7 @@ pub(crate) struct Posture<'a> {
 
 /// Posture of an arm; `None` for a criterion too near to its border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Bent {
+pub(crate) struct BendSigns {
     /// The wrist centre is before the first axis.
     pub(crate) is_front: Option<bool>,
     /// The wrist centre is before the lower arm, on the same side as at zero.
@@ -50,9 +50,9 @@ pub(crate) struct Bent {
 impl<'a> Posture<'a> {
     /// The posture of an arm; `None` if its structure or zero differs.
     pub(crate) fn new(arm: &'a Arm) -> Option<Self> {
-        let (axes, wrist) = placed(arm, &[0.0; 6])?;
+        let (axes, wrist) = wrist_axes(arm, &[0.0; 6])?;
         let reach = arm.reach_m();
-        let meets = |(point, direction): &Axis| {
+        let meets = |(point, direction): &AxisLine| {
             let off = wrist - point;
             (off - direction * direction.dot(&off)).norm() < MEET * reach
         };
@@ -86,19 +86,19 @@ impl<'a> Posture<'a> {
     }
 
     /// The posture at readings (rad).
-    pub(crate) fn at(&self, q: &[f64; 6]) -> Bent {
-        let Some((axes, wrist)) = placed(self.arm, q) else { return Bent::default() };
+    pub(crate) fn bends_at(&self, q: &[f64; 6]) -> BendSigns {
+        let Some((axes, wrist)) = wrist_axes(self.arm, q) else { return BendSigns::default() };
         let reach = self.arm.reach_m();
         let first = axes[0].1;
         // The front rotates with the second axis, which is perpendicular to it at zero.
-        let front = self.turned(&axes, self.front);
+        let front = self.level_direction(&axes, self.front);
         let ahead = front.dot(&(wrist - axes[0].0));
         let across = |it: Vector3<f64>| it - axes[1].1 * axes[1].1.dot(&it);
         let (lower, whole) = (across(axes[2].0 - axes[1].0), across(wrist - axes[1].0));
         let side = self.side * lower.cross(&whole).dot(&axes[1].1) / lower.norm();
         let upright = lower.normalize().dot(&(first * self.up.dot(&first).signum()));
         let told = |value: f64, least: f64| (value.abs() > least).then_some(value > 0.0);
-        Bent {
+        BendSigns {
             is_front: told(ahead, ASIDE * reach),
             is_before_arm: told(side, ASIDE * reach),
             is_arm_up: told(upright, 0.05),
@@ -107,7 +107,7 @@ impl<'a> Posture<'a> {
     }
 
     /// Present direction of a horizontal direction at zero that is fixed to the link between the first two joints.
-    fn turned(&self, axes: &[Axis; 6], direction: Vector3<f64>) -> Vector3<f64> {
+    fn level_direction(&self, axes: &[AxisLine; 6], direction: Vector3<f64>) -> Vector3<f64> {
         let Some(second) = self.arm.screws().get(1).map(poecal_arm::lie::Screw::direction) else {
             return direction;
         };
@@ -119,11 +119,11 @@ impl<'a> Posture<'a> {
 }
 
 /// The axes of six joints at readings, directions of length 1, and the wrist centre.
-fn placed(arm: &Arm, q: &[f64; 6]) -> Option<([Axis; 6], Vector3<f64>)> {
+fn wrist_axes(arm: &Arm, q: &[f64; 6]) -> Option<([AxisLine; 6], Vector3<f64>)> {
     if arm.joints() != 6 {
         return None;
     }
-    let mut axes: [Axis; 6] = axes(arm, q).try_into().ok()?;
+    let mut axes: [AxisLine; 6] = axes(arm, q).try_into().ok()?;
     for (_, direction) in &mut axes {
         *direction = direction.try_normalize(1e-3)?;
     }
@@ -162,7 +162,7 @@ mod tests {
             [0.834, 0.0, 0.72],
         );
         let posture = Posture::new(&arm).unwrap();
-        let at = |degrees: [f64; 6]| posture.at(&degrees.map(f64::to_radians));
+        let at = |degrees: [f64; 6]| posture.bends_at(&degrees.map(f64::to_radians));
         let level = at([0.0, 0.0, 0.0, 0.0, 30.0, 0.0]);
         assert_eq!(level.is_front, Some(true));
         assert_eq!(level.is_before_arm, Some(true));

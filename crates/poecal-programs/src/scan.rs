@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::number::Number;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
 /// Syntax of a language.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rules {
+pub(crate) struct LexicalRules {
     /// Beginnings of a comment, which ends with the line.
     pub(crate) comments: &'static [&'static str],
     /// Signs around texts, which end with the line at the latest.
@@ -21,7 +21,7 @@ pub(crate) struct Rules {
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum TokenKind {
     /// A name or a keyword.
     Word,
     /// A number without its sign: value and number of decimals.
@@ -38,7 +38,7 @@ pub(crate) enum Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Token {
     /// Kind of the token.
-    pub(crate) kind: Kind,
+    pub(crate) kind: TokenKind,
     /// Its bytes.
     pub(crate) range: Range<usize>,
     /// Its line, from 1.
@@ -48,17 +48,17 @@ pub(crate) struct Token {
 impl Token {
     /// True if it is this sign.
     pub(crate) fn is(&self, sign: u8) -> bool {
-        self.kind == Kind::Sign(sign)
+        self.kind == TokenKind::Sign(sign)
     }
 
     /// True if it is an opening bracket.
     fn opens(&self) -> bool {
-        matches!(self.kind, Kind::Sign(b'(' | b'[' | b'{'))
+        matches!(self.kind, TokenKind::Sign(b'(' | b'[' | b'{'))
     }
 
     /// True if it is a closing bracket.
     fn closes(&self) -> bool {
-        matches!(self.kind, Kind::Sign(b')' | b']' | b'}'))
+        matches!(self.kind, TokenKind::Sign(b')' | b']' | b'}'))
     }
 
     /// Its bytes as text.
@@ -68,7 +68,7 @@ impl Token {
 
     /// True if it is this word; case does not matter.
     pub(crate) fn is_word(&self, text: &[u8], word: &str) -> bool {
-        self.kind == Kind::Word && self.text(text).eq_ignore_ascii_case(word)
+        self.kind == TokenKind::Word && self.text(text).eq_ignore_ascii_case(word)
     }
 }
 
@@ -76,14 +76,14 @@ impl Token {
 #[derive(Clone, Debug)]
 pub(crate) struct Scanner<'t> {
     text: &'t [u8],
-    rules: &'t Rules,
+    rules: &'t LexicalRules,
     at: usize,
     line: usize,
     depth: usize,
 }
 
 impl<'t> Scanner<'t> {
-    pub(crate) fn new(text: &'t [u8], rules: &'t Rules) -> Self {
+    pub(crate) fn new(text: &'t [u8], rules: &'t LexicalRules) -> Self {
         let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Scanner { text, rules, at, line: 1, depth: 0 }
     }
@@ -94,7 +94,7 @@ impl<'t> Scanner<'t> {
         loop {
             match self.next() {
                 None => return (!out.is_empty()).then_some(()),
-                Some(token) if token.kind == Kind::LineEnd => return Some(()),
+                Some(token) if token.kind == TokenKind::LineEnd => return Some(()),
                 Some(token) => out.push(token),
             }
         }
@@ -117,7 +117,8 @@ impl Iterator for Scanner<'_> {
         loop {
             let byte = *self.text.get(self.at)?;
             let start = self.at;
-            let token = |kind: Kind, end: usize, line: usize| Some(Token { kind, range: start..end, line });
+            let token =
+                |kind: TokenKind, end: usize, line: usize| Some(Token { kind, range: start..end, line });
             match byte {
                 b'\n' | b'\r' => {
                     let both = self.text[self.at..].starts_with(b"\r\n");
@@ -125,7 +126,7 @@ impl Iterator for Scanner<'_> {
                     self.line += 1;
                     if self.depth == 0 || !self.rules.is_open_in_brackets {
                         self.depth = 0;
-                        return token(Kind::LineEnd, self.at, self.line - 1);
+                        return token(TokenKind::LineEnd, self.at, self.line - 1);
                     }
                 }
                 b' ' | b'\t' | 0x0b | 0x0c => self.at += 1,
@@ -137,18 +138,18 @@ impl Iterator for Scanner<'_> {
                     let inside = self.text.get(start + 1..line_end).unwrap_or_default();
                     let closing = inside.iter().position(|it| *it == byte);
                     self.at = closing.map_or(line_end, |it| start + 2 + it);
-                    return token(Kind::Text, self.at, self.line);
+                    return token(TokenKind::Text, self.at, self.line);
                 }
                 _ if self.is_letter(byte) => {
                     let rest = &self.text[start..];
                     let length = rest.iter().position(|&it| !self.is_letter(it) && !it.is_ascii_digit());
                     self.at += length.unwrap_or(rest.len());
-                    return token(Kind::Word, self.at, self.line);
+                    return token(TokenKind::Word, self.at, self.line);
                 }
                 _ => {
                     if let Some((length, value, decimals)) = number(&self.text[start..]) {
                         self.at += length;
-                        return token(Kind::Number(value, decimals), self.at, self.line);
+                        return token(TokenKind::Number(value, decimals), self.at, self.line);
                     }
                     self.at += 1;
                     match byte {
@@ -156,7 +157,7 @@ impl Iterator for Scanner<'_> {
                         b')' | b']' | b'}' => self.depth = self.depth.saturating_sub(1),
                         _ => {}
                     }
-                    return token(Kind::Sign(byte), self.at, self.line);
+                    return token(TokenKind::Sign(byte), self.at, self.line);
                 }
             }
         }
@@ -167,11 +168,11 @@ impl Iterator for Scanner<'_> {
 ///
 /// # Errors
 /// [`ErrorKind::Syntax`], with the line.
-pub(crate) fn refuse_nested(text: &[u8], rules: &Rules) -> Result<()> {
+pub(crate) fn refuse_nested(text: &[u8], rules: &LexicalRules) -> Result<()> {
     let mut depths = [0_usize; 3];
     for token in Scanner::new(text, rules) {
-        let Kind::Sign(sign) = token.kind else {
-            if token.kind == Kind::LineEnd {
+        let TokenKind::Sign(sign) = token.kind else {
+            if token.kind == TokenKind::LineEnd {
                 depths = [0; 3];
             }
             continue;
@@ -179,8 +180,8 @@ pub(crate) fn refuse_nested(text: &[u8], rules: &Rules) -> Result<()> {
         let Some(kind) = [b"()", b"[]", b"{}"].iter().position(|it| it.contains(&sign)) else { continue };
         let depth = &mut depths[kind];
         *depth = if token.opens() { *depth + 1 } else { depth.saturating_sub(1) };
-        if *depth > Limit::Nesting.most_held() {
-            let message = Limit::Nesting.exceeded("brackets in each other");
+        if *depth > ResourceLimit::Nesting.most_held() {
+            let message = ResourceLimit::Nesting.exceeded_error("brackets in each other");
             return Err(ErrorKind::Syntax.error(message).at_line("program", token.line));
         }
     }
@@ -214,19 +215,19 @@ fn number(text: &[u8]) -> Option<(usize, f64, usize)> {
 }
 
 /// A number with its sign, and nothing else, in these tokens.
-pub(crate) fn signed(tokens: &[Token]) -> Option<Number> {
+pub(crate) fn signed_number(tokens: &[Token]) -> Option<Number> {
     let (sign, rest) = match tokens {
         [sign, rest @ ..] if sign.is(b'-') => (-1.0, rest),
         [sign, rest @ ..] if sign.is(b'+') => (1.0, rest),
         _ => (1.0, tokens),
     };
-    let [Token { kind: Kind::Number(value, decimals), range, .. }] = rest else { return None };
+    let [Token { kind: TokenKind::Number(value, decimals), range, .. }] = rest else { return None };
     let start = tokens.first()?.range.start;
     Some(Number { range: start..range.end, value: sign * value, decimals: *decimals, scale: 1.0 })
 }
 
 /// The tokens outside of brackets, each with its index among all; brackets are not among them.
-pub(crate) fn outside(tokens: &[Token]) -> impl Iterator<Item = (usize, &Token)> {
+pub(crate) fn outside_brackets(tokens: &[Token]) -> impl Iterator<Item = (usize, &Token)> {
     let mut depth = 0_usize;
     tokens.iter().enumerate().filter(move |(_, token)| {
         let is_bracket = token.opens() || token.closes();
@@ -238,7 +239,7 @@ pub(crate) fn outside(tokens: &[Token]) -> impl Iterator<Item = (usize, &Token)>
 /// Tokens cut at the separators outside of brackets.
 fn pieces(tokens: &[Token], separator: u8) -> Vec<&[Token]> {
     let (mut out, mut start) = (Vec::new(), 0);
-    for (at, _) in outside(tokens).filter(|(_, it)| it.is(separator)) {
+    for (at, _) in outside_brackets(tokens).filter(|(_, it)| it.is(separator)) {
         out.push(&tokens[start..at]);
         start = at + 1;
     }
@@ -283,7 +284,7 @@ pub(crate) fn bracket(tokens: &[Token], open: u8, close: u8) -> Option<(&[Token]
 }
 
 /// The text of tokens, cut after some letters.
-pub(crate) fn shown(text: &[u8], tokens: &[Token]) -> String {
+pub(crate) fn excerpt(text: &[u8], tokens: &[Token]) -> String {
     let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else { return String::new() };
     let bytes = text.get(first.range.start..last.range.end).unwrap_or_default();
     let all = String::from_utf8_lossy(bytes);

@@ -18,7 +18,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 
 use crate::errors::argument;
 use crate::units;
-use crate::words::{from_mm, one_of, shortened};
+use crate::words::{from_mm, one_of, shorten_text};
 
 /// Type of an argument.
 pub(crate) trait Argument<'a, 'py>: Sized {
@@ -30,7 +30,7 @@ pub(crate) trait Argument<'a, 'py>: Sized {
 macro_rules! named {
     ($($name:ident)*) => { $(
         pub(crate) fn $name<'a, 'py, T: Argument<'a, 'py>>(value: &'a Bound<'py, PyAny>) -> PyResult<T> {
-            T::of(value, stringify!($name))
+            T::from_argument(value, stringify!($name))
         }
     )* };
 }
@@ -60,23 +60,23 @@ pub(crate) fn refuse_unknown<T: PyTypeInfo>(
 }
 
 /// The error for an argument that differs from the expectation.
-pub(crate) fn unexpected(name: &str, value: &Bound<'_, PyAny>, expected: impl Display) -> PyErr {
-    argument(name, format!("found {}, expected {expected}", found(value)))
+pub(crate) fn unexpected_error(name: &str, value: &Bound<'_, PyAny>, expected: impl Display) -> PyErr {
+    argument(name, format!("found {}, expected {expected}", describe_value(value)))
 }
 
 /// Description of a value, in words.
-pub(crate) fn found(value: &Bound<'_, PyAny>) -> String {
+pub(crate) fn describe_value(value: &Bound<'_, PyAny>) -> String {
     let type_name =
         || value.get_type().name().map_or_else(|_| "something".to_owned(), |name| name.to_string());
     if value.is_none() {
         return "None".to_owned();
     }
     if let Ok(text) = value.cast::<PyString>() {
-        return format!("the text `{}`", shortened(&text.to_string_lossy()));
+        return format!("the text `{}`", shorten_text(&text.to_string_lossy()));
     }
     let is_scalar = || value.getattr("ndim").and_then(|it| it.extract::<usize>()).is_ok_and(|ndim| ndim == 0);
     if value.is_instance_of::<PyInt>() || value.is_instance_of::<PyFloat>() || is_scalar() {
-        return value.str().map_or_else(|_| type_name(), |text| shortened(&text.to_string_lossy()));
+        return value.str().map_or_else(|_| type_name(), |text| shorten_text(&text.to_string_lossy()));
     }
     type_name()
 }
@@ -92,7 +92,7 @@ macro_rules! whole_numbers {
         impl<'a, 'py> Argument<'a, 'py> for $kind {
             fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
                 let expected = format!("a whole number from 0 to {}", <$kind>::MAX);
-                value.extract().map_err(|_| unexpected(name, value, expected))
+                value.extract().map_err(|_| unexpected_error(name, value, expected))
             }
         }
     )* };
@@ -105,20 +105,20 @@ impl<'a, 'py> Argument<'a, 'py> for f64 {
         if let (Some(unit), true) = (units::of_name(name), value.is_instance_of::<PyString>()) {
             return units::in_unit(<&str>::from_argument(value, name)?, unit, name);
         }
-        value.extract().map_err(|_| unexpected(name, value, "a number"))
+        value.extract().map_err(|_| unexpected_error(name, value, "a number"))
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for bool {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        value.extract().map_err(|_| unexpected(name, value, "True or False"))
+        value.extract().map_err(|_| unexpected_error(name, value, "True or False"))
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for &'a str {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let text = value.cast::<PyString>().map_err(|_| unexpected(name, value, "a text"))?;
-        text.to_str().map_err(|_| unexpected(name, value, "a text of Unicode characters"))
+        let text = value.cast::<PyString>().map_err(|_| unexpected_error(name, value, "a text"))?;
+        text.to_str().map_err(|_| unexpected_error(name, value, "a text of Unicode characters"))
     }
 }
 
@@ -130,15 +130,16 @@ impl<'a, 'py> Argument<'a, 'py> for String {
 
 impl<'a, 'py> Argument<'a, 'py> for PathBuf {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let path: PathBuf =
-            value.extract().map_err(|_| unexpected(name, value, "a path: a text, or an os.PathLike"))?;
+        let path: PathBuf = value
+            .extract()
+            .map_err(|_| unexpected_error(name, value, "a path: a text, or an os.PathLike"))?;
         if path.as_os_str().is_empty() {
             return Err(argument(name, "found an empty text, expected a path"));
         }
         if path.to_str().is_some_and(is_content) {
             let expected =
                 "the path of a file that holds it; a robot model's text is read by poecal.Robot.from_text";
-            return Err(unexpected(name, value, expected));
+            return Err(unexpected_error(name, value, expected));
         }
         Ok(path)
     }
@@ -153,51 +154,52 @@ impl<'a, 'py, T: Argument<'a, 'py>> Argument<'a, 'py> for Option<T> {
 impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let entries: Vec<Bound<'py, PyAny>> =
-            value.extract().map_err(|_| unexpected(name, value, "a list"))?;
-        let entry = |(at, entry): (usize, &Bound<'py, PyAny>)| T::from_argument(entry, &format!("{name}[{at}]"));
+            value.extract().map_err(|_| unexpected_error(name, value, "a list"))?;
+        let entry =
+            |(at, entry): (usize, &Bound<'py, PyAny>)| T::from_argument(entry, &format!("{name}[{at}]"));
         entries.iter().enumerate().map(entry).collect()
     }
 }
 
 /// Some of a few words: a list, or a text with commas as in the program.
-pub(crate) struct Words(Vec<String>);
+pub(crate) struct WordSet(Vec<String>);
 
-impl Words {
+impl WordSet {
     /// Their meanings.
-    pub(crate) fn chosen<T: Copy>(&self, name: &str, words: words::Words<T>) -> PyResult<Vec<T>> {
+    pub(crate) fn choose<T: Copy>(&self, name: &str, words: words::WordList<T>) -> PyResult<Vec<T>> {
         self.0.iter().map(|word| one_of(name, word, words)).collect()
     }
 }
 
-impl<'a, 'py> Argument<'a, 'py> for Words {
+impl<'a, 'py> Argument<'a, 'py> for WordSet {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyString>() {
-            return Ok(Words(
+            return Ok(WordSet(
                 <&str>::from_argument(value, name)?.split(',').map(|word| word.trim().to_owned()).collect(),
             ));
         }
-        Vec::from_argument(value, name).map(Words)
+        Vec::from_argument(value, name).map(WordSet)
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let value = &units::listed(value, name)?;
+        let value = &units::split_list(value, name)?;
         if value.len().is_ok_and(|length| length != 2) || value.try_iter().is_err() {
-            return Err(unexpected(name, value, "two numbers"));
+            return Err(unexpected_error(name, value, "two numbers"));
         }
         match Vec::<f64>::from_argument(value, name)?.as_slice() {
             [first, second] => Ok((*first, *second)),
-            _ => Err(unexpected(name, value, "two numbers")),
+            _ => Err(unexpected_error(name, value, "two numbers")),
         }
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let value = &units::listed(value, name)?;
+        let value = &units::split_list(value, name)?;
         if value.try_iter().is_err() {
-            return Err(unexpected(name, value, "three numbers"));
+            return Err(unexpected_error(name, value, "three numbers"));
         }
         match Vec::<f64>::from_argument(value, name)?.as_slice() {
             [x, y, z] => Ok([*x, *y, *z]),
@@ -208,7 +210,7 @@ impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
 
 impl<'a, 'py> Argument<'a, 'py> for RobotError {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let value = &units::listed(value, name)?;
+        let value = &units::split_list(value, name)?;
         let (calibrated_mm, corrected_mm) = match value.try_iter() {
             Ok(_) if !value.is_instance_of::<PyString>() => {
                 <(f64, f64)>::from_argument(value, name).map(|it| (it.0, Some(it.1)))?
@@ -230,26 +232,28 @@ impl<'a, 'py> Argument<'a, 'py> for RobotError {
 
 /// Tolerance of the prior: none, chosen by cross-validation, degrees and millimetres, or a maker's file.
 #[derive(Clone, PartialEq)]
-pub(crate) enum Believed {
+pub(crate) enum PriorTolerance {
     None,
     Auto,
     Given((f64, f64)),
     Of(PathBuf),
 }
 
-impl<'a, 'py> Argument<'a, 'py> for Believed {
+impl<'a, 'py> Argument<'a, 'py> for PriorTolerance {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         match value.cast::<PyString>().ok().map(|text| text.to_string_lossy().into_owned()) {
-            Some(text) if text == "auto" => Ok(Believed::Auto),
-            Some(text) if text.to_ascii_lowercase().ends_with(".cfg") => Ok(Believed::Of(text.into())),
-            Some(text) if text.contains(',') => <(f64, f64)>::from_argument(value, name).map(Believed::Given),
-            Some(_) => Err(unexpected(
+            Some(text) if text == "auto" => Ok(PriorTolerance::Auto),
+            Some(text) if text.to_ascii_lowercase().ends_with(".cfg") => Ok(PriorTolerance::Of(text.into())),
+            Some(text) if text.contains(',') => {
+                <(f64, f64)>::from_argument(value, name).map(PriorTolerance::Given)
+            }
+            Some(_) => Err(unexpected_error(
                 name,
                 value,
                 "two numbers, a text like \"0.5deg,5mm\", \"auto\", the path of a MOC.cfg, or None",
             )),
-            None if value.is_none() => Ok(Believed::None),
-            None => <(f64, f64)>::from_argument(value, name).map(Believed::Given),
+            None if value.is_none() => Ok(PriorTolerance::None),
+            None => <(f64, f64)>::from_argument(value, name).map(PriorTolerance::Given),
         }
     }
 }
@@ -257,7 +261,9 @@ impl<'a, 'py> Argument<'a, 'py> for Believed {
 impl<'a, 'py> Argument<'a, 'py> for GravityDirection {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyString>() {
-            return String::from_argument(value, name)?.parse().map_err(|message: String| argument(name, message));
+            return String::from_argument(value, name)?
+                .parse()
+                .map_err(|message: String| argument(name, message));
         }
         crate::words::direction(<[f64; 3]>::from_argument(value, name)?).map(GravityDirection::Known)
     }
@@ -271,7 +277,11 @@ impl<'a, 'py> Argument<'a, 'py> for Corrections {
             let sizes = BTreeMap::<String, f64>::from_argument(value, name)?;
             sizes.iter().map(|(group, size)| format!("{group}={size:e}")).collect::<Vec<_>>().join(",")
         } else {
-            return Err(unexpected(name, value, "a text, or a dict of groups of terms and their sizes"));
+            return Err(unexpected_error(
+                name,
+                value,
+                "a text, or a dict of groups of terms and their sizes",
+            ));
         };
         words.parse().map_err(|message: String| argument(name, message))
     }
@@ -280,7 +290,7 @@ impl<'a, 'py> Argument<'a, 'py> for Corrections {
 impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let expected = "a dict of names and numbers";
-        let entries = value.cast::<PyDict>().map_err(|_| unexpected(name, value, expected))?;
+        let entries = value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, expected))?;
         let entry = |(key, number): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
             let key = String::from_argument(&key, &format!("{name}, a key"))?;
             let name = format!("{name}[\"{key}\"]");
@@ -297,7 +307,7 @@ impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
 /// A value in the program's notation; `expected` describes it.
 fn parsed<T: FromStr<Err = Error>>(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<T> {
     if !value.is_instance_of::<PyString>() {
-        return Err(unexpected(name, value, expected));
+        return Err(unexpected_error(name, value, expected));
     }
     String::from_argument(value, name)?.parse().map_err(|error: Error| argument(name, error.message()))
 }
@@ -317,7 +327,7 @@ impl<'a, 'py> Argument<'a, 'py> for RepairLimits {
 impl<'a, 'py> Argument<'a, 'py> for Record {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let entries =
-            value.cast::<PyDict>().map_err(|_| unexpected(name, value, "a dict of keys and texts"))?;
+            value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, "a dict of keys and texts"))?;
         let entry = |(key, text): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
             let key = String::from_argument(&key, &format!("{name}, a key"))?;
             let text = String::from_argument(&text, &format!("{name}[\"{key}\"]"))?;
@@ -330,18 +340,18 @@ impl<'a, 'py> Argument<'a, 'py> for Record {
 }
 
 /// Names with their links, in their order.
-pub(crate) struct Links(pub(crate) Vec<(String, String)>);
+pub(crate) struct NamedLinks(pub(crate) Vec<(String, String)>);
 
-impl<'a, 'py> Argument<'a, 'py> for Links {
+impl<'a, 'py> Argument<'a, 'py> for NamedLinks {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let entries =
-            value.cast::<PyDict>().map_err(|_| unexpected(name, value, "a dict of names and links"))?;
+            value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, "a dict of names and links"))?;
         let entry = |(key, link): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
             let key = String::from_argument(&key, &format!("{name}, a key"))?;
             let link = String::from_argument(&link, &format!("{name}[\"{key}\"]"))?;
             Ok((key, link))
         };
-        entries.iter().map(entry).collect::<PyResult<_>>().map(Links)
+        entries.iter().map(entry).collect::<PyResult<_>>().map(NamedLinks)
     }
 }
 
@@ -349,10 +359,10 @@ impl<'a, 'py> Argument<'a, 'py> for Links {
 pub(crate) fn selection(
     base_link: Option<String>,
     tip_link: Option<String>,
-    instruments: Option<Links>,
-    targets: Option<Links>,
+    instruments: Option<NamedLinks>,
+    targets: Option<NamedLinks>,
 ) -> ChainSelection {
-    let links = |links: Option<Links>| links.map_or_else(Vec::new, |links| links.0);
+    let links = |links: Option<NamedLinks>| links.map_or_else(Vec::new, |links| links.0);
     ChainSelection { base_link, tip_link, instruments: links(instruments), targets: links(targets) }
 }
 
@@ -366,24 +376,24 @@ impl<'a, 'py> Argument<'a, 'py> for Paths {
             return Vec::from_argument(value, name).map(Paths);
         }
         if value.extract::<PathBuf>().is_err() {
-            return Err(unexpected(name, value, "a path, or a list of paths"));
+            return Err(unexpected_error(name, value, "a path, or a list of paths"));
         }
         PathBuf::from_argument(value, name).map(|path| Paths(vec![path]))
     }
 }
 
 /// A function to call.
-pub(crate) struct Function(pub(crate) Py<PyAny>);
+pub(crate) struct CallableArgument(pub(crate) Py<PyAny>);
 
-impl<'a, 'py> Argument<'a, 'py> for Function {
+impl<'a, 'py> Argument<'a, 'py> for CallableArgument {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyBool>() && value.is_truthy()? {
             let bar = value.py().import("poecal._progress")?.getattr("Bar")?;
-            return Ok(Function(bar.call0()?.unbind()));
+            return Ok(CallableArgument(bar.call0()?.unbind()));
         }
         if value.is_callable() {
-            return Ok(Function(value.clone().unbind()));
+            return Ok(CallableArgument(value.clone().unbind()));
         }
-        Err(unexpected(name, value, "a function of one text, or True for a bar"))
+        Err(unexpected_error(name, value, "a function of one text, or True for a bar"))
     }
 }

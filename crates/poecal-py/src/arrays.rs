@@ -15,34 +15,34 @@ use crate::errors::argument;
 const ROTATION_TOLERANCE: f64 = 1e-2;
 
 /// Numbers of an array-like in C order, with their shape.
-pub(crate) struct Numbers {
+pub(crate) struct NumberArray {
     pub(crate) values: Vec<f64>,
     pub(crate) shape: Vec<usize>,
     /// True if some of them were masked: these are NaN.
     masked: bool,
 }
 
-impl Numbers {
+impl NumberArray {
     /// The numbers of `value`, the argument `name`: float32, integers, lists and arrays of any layout become float64, and masked
     /// numbers NaN.
     pub(crate) fn from_argument(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
-        let unmasked = unmasked(value, name, expected)?;
+        let unmasked = unmask(value, name, expected)?;
         let (value, masked) = (unmasked.as_ref().unwrap_or(value), unmasked.is_some());
         let array = match value.extract::<PyReadonlyArrayDyn<'_, f64>>() {
             Ok(array) if array.is_c_contiguous() => array,
-            _ => converted(value, name, expected)?,
+            _ => convert_array(value, name, expected)?,
         };
-        Ok(Numbers { shape: array.shape().to_vec(), values: array.as_slice()?.to_vec(), masked })
+        Ok(NumberArray { shape: array.shape().to_vec(), values: array.as_slice()?.to_vec(), masked })
     }
 
     /// A number for each of some rows.
-    pub(crate) fn repeated(number: f64, rows: usize) -> Self {
-        Numbers { values: vec![number; rows], shape: vec![rows], masked: false }
+    pub(crate) fn repeat_number(number: f64, rows: usize) -> Self {
+        NumberArray { values: vec![number; rows], shape: vec![rows], masked: false }
     }
 
     /// The numbers of `value`, refused if a number is not finite.
-    pub(crate) fn finite(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
-        let numbers = Numbers::from_argument(value, name, expected)?;
+    pub(crate) fn require_finite(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
+        let numbers = NumberArray::from_argument(value, name, expected)?;
         let row_length: usize = numbers.shape.iter().skip(1).product::<usize>().max(1);
         match numbers.values.iter().enumerate().find(|(_, number)| !number.is_finite()) {
             Some((at, number)) => {
@@ -62,18 +62,23 @@ impl Numbers {
         }
     }
 
-    /// Finite numbers of the shape `wanted`, as [`Numbers::shaped`].
+    /// Finite numbers of the shape `wanted`, as [`NumberArray::require_shape`].
     pub(crate) fn finite_of(
         value: &Bound<'_, PyAny>,
         name: &str,
         wanted: &[Option<usize>],
         expected: &str,
     ) -> PyResult<Self> {
-        Numbers::finite(value, name, expected)?.shaped(wanted, name, expected)
+        NumberArray::require_finite(value, name, expected)?.require_shape(wanted, name, expected)
     }
 
     /// Refuses another shape than `wanted`, in which `None` is any length.
-    pub(crate) fn shaped(self, wanted: &[Option<usize>], name: &str, expected: &str) -> PyResult<Self> {
+    pub(crate) fn require_shape(
+        self,
+        wanted: &[Option<usize>],
+        name: &str,
+        expected: &str,
+    ) -> PyResult<Self> {
         let fits = |(&found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|wanted| found == wanted);
         if self.shape.len() == wanted.len() && self.shape.iter().zip(wanted).all(fits) {
             return Ok(self);
@@ -96,11 +101,7 @@ impl Numbers {
 }
 
 /// A masked array, or a list of some, as an array with NaN for masked values; `None` if nothing is masked.
-fn unmasked<'py>(
-    value: &Bound<'py, PyAny>,
-    name: &str,
-    expected: &str,
-) -> PyResult<Option<Bound<'py, PyAny>>> {
+fn unmask<'py>(value: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
     // An object of exactly this type has no mask, and most arguments are.
     if value.is_exact_instance_of::<PyUntypedArray>() {
         return Ok(None);
@@ -137,7 +138,7 @@ fn unmasked<'py>(
 }
 
 /// `numpy.ascontiguousarray(value, dtype=float)`, refused if that would be lossy or ambiguous.
-fn converted<'py>(
+fn convert_array<'py>(
     value: &Bound<'py, PyAny>,
     name: &str,
     expected: &str,
@@ -161,7 +162,7 @@ fn converted<'py>(
 /// The argument `name` as one pose, an array of shape (4, 4).
 pub(crate) fn pose(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Pose> {
     let expected = "a pose of shape (4, 4)";
-    let numbers = Numbers::finite_of(value, name, &[Some(4), Some(4)], expected)?;
+    let numbers = NumberArray::finite_of(value, name, &[Some(4), Some(4)], expected)?;
     pose_of(&numbers.values).map_err(|message| argument(name, message))
 }
 
@@ -213,25 +214,28 @@ pub(crate) fn table<'py>(
 }
 
 /// Joint readings, of shape (m, n) or (n,) for one configuration.
-pub(crate) struct Joints {
+pub(crate) struct JointArray {
     /// All configurations, in the order of the robot's readings.
     pub(crate) readings: Vec<f64>,
     /// True if it was a single configuration.
     pub(crate) single: bool,
 }
 
-impl Joints {
+impl JointArray {
     /// Configurations of the argument `joints`.
-    pub(crate) fn from_argument(value: &Bound<'_, PyAny>, robot: &poecal_model::robot::Robot) -> PyResult<Self> {
+    pub(crate) fn from_argument(
+        value: &Bound<'_, PyAny>,
+        robot: &poecal_model::robot::Robot,
+    ) -> PyResult<Self> {
         let names = robot.reading_names();
         let n = names.len();
         let expected = format!(
             "shape (m, {n}) or ({n},): in each configuration {} (radians; metres of sliding joints)",
             names.join(", ")
         );
-        let numbers = Numbers::finite(value, "joints", &expected)?;
+        let numbers = NumberArray::require_finite(value, "joints", &expected)?;
         let single = numbers.shape.len() == 1;
         let wanted: &[Option<usize>] = if single { &[Some(n)] } else { &[None, Some(n)] };
-        Ok(Joints { readings: numbers.shaped(wanted, "joints", &expected)?.values, single })
+        Ok(JointArray { readings: numbers.require_shape(wanted, "joints", &expected)?.values, single })
     }
 }

@@ -8,12 +8,12 @@ use poecal_numerics::error::Error;
 use poecal_results::model::{Model, ModelSource};
 use pyo3::prelude::*;
 
-use crate::arrays::{Numbers, pose};
+use crate::arrays::{NumberArray, pose};
 use crate::errors::{argument, raise};
-use crate::words::chosen;
+use crate::words::choose_word;
 
 /// Arguments that do not concern geometry.
-pub(crate) struct Naming<'a, 'py> {
+pub(crate) struct NamingArguments<'a, 'py> {
     pub(crate) name: &'a str,
     pub(crate) names: Option<Vec<String>>,
     pub(crate) limits: Option<&'a Bound<'py, PyAny>>,
@@ -21,7 +21,7 @@ pub(crate) struct Naming<'a, 'py> {
     pub(crate) tip_link: &'a str,
 }
 
-impl Naming<'_, '_> {
+impl NamingArguments<'_, '_> {
     /// Names of the joints.
     fn joints(&self, count: usize) -> PyResult<Vec<String>> {
         let Some(names) = &self.names else {
@@ -35,8 +35,11 @@ impl Naming<'_, '_> {
     fn limits(&self, count: usize) -> PyResult<Vec<String>> {
         let Some(limits) = self.limits else { return Ok(vec![String::new(); count]) };
         let expected = format!("shape ({count}, 2): lower and upper limit of each joint, radians or metres");
-        let limits =
-            Numbers::from_argument(limits, "limits", &expected)?.shaped(&[Some(count), Some(2)], "limits", &expected)?;
+        let limits = NumberArray::from_argument(limits, "limits", &expected)?.require_shape(
+            &[Some(count), Some(2)],
+            "limits",
+            &expected,
+        )?;
         let key = |row: &[f64]| match row {
             [lower, upper] if lower.is_finite() && upper.is_finite() => {
                 format!(", limits = [{lower:?}, {upper:?}]")
@@ -50,9 +53,9 @@ impl Naming<'_, '_> {
     fn model(&self, rest: &str) -> PyResult<Model> {
         let text = format!(
             "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n{rest}",
-            quoted(self.name),
-            quoted(self.base_link),
-            quoted(self.tip_link)
+            quote_toml(self.name),
+            quote_toml(self.base_link),
+            quote_toml(self.tip_link)
         );
         // A position in a text that the user did not write would mislead.
         let without_place = |error: Error| raise(Error::new(error.kind(), error.message()));
@@ -70,7 +73,7 @@ fn check_count(name: &str, found: usize, joints: usize) -> PyResult<()> {
 }
 
 /// A TOML string.
-fn quoted(text: &str) -> String {
+fn quote_toml(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {
@@ -97,10 +100,10 @@ pub(crate) fn from_screws(
     screws: &Bound<'_, PyAny>,
     home: &Bound<'_, PyAny>,
     angular_first: bool,
-    naming: &Naming<'_, '_>,
+    naming: &NamingArguments<'_, '_>,
 ) -> PyResult<Model> {
     let expected = "shape (n, 6): a unit twist a joint";
-    let screws = Numbers::finite_of(screws, "screws", &[None, Some(6)], expected)?;
+    let screws = NumberArray::finite_of(screws, "screws", &[None, Some(6)], expected)?;
     let count = screws.rows();
     let (names, limits) = (naming.joints(count)?, naming.limits(count)?);
     let mut text = "joint = [\n".to_owned();
@@ -108,7 +111,7 @@ pub(crate) fn from_screws(
         let (first, last) = row.split_at(3);
         let (v, w) = if angular_first { (last, first) } else { (first, last) };
         let kind = if w.iter().all(|part| *part == 0.0) { "prismatic" } else { "revolute" };
-        let name = quoted(name);
+        let name = quote_toml(name);
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
@@ -120,7 +123,7 @@ pub(crate) fn from_screws(
 }
 
 /// Denavit-Hartenberg parameters as arguments.
-pub(crate) struct DhTable<'a, 'py> {
+pub(crate) struct DhArguments<'a, 'py> {
     pub(crate) a_m: &'a Bound<'py, PyAny>,
     pub(crate) alpha_rad: &'a Bound<'py, PyAny>,
     pub(crate) d_m: &'a Bound<'py, PyAny>,
@@ -131,13 +134,13 @@ pub(crate) struct DhTable<'a, 'py> {
     pub(crate) tool: Option<&'a Bound<'py, PyAny>>,
 }
 
-pub(crate) fn from_dh(table: &DhTable<'_, '_>, naming: &Naming<'_, '_>) -> PyResult<Model> {
+pub(crate) fn from_dh(table: &DhArguments<'_, '_>, naming: &NamingArguments<'_, '_>) -> PyResult<Model> {
     let words = [("standard", "standard_dh"), ("modified", "modified_dh")];
-    let convention = chosen("convention", table.convention, &words)?;
-    let a = Numbers::finite_of(table.a_m, "a_m", &[None], "shape (n,), metres")?;
+    let convention = choose_word("convention", table.convention, &words)?;
+    let a = NumberArray::finite_of(table.a_m, "a_m", &[None], "shape (n,), metres")?;
     let count = a.rows();
     let expected = format!("shape ({count},) as a_m");
-    let column = |value, name| Numbers::finite_of(value, name, &[Some(count)], &expected);
+    let column = |value, name| NumberArray::finite_of(value, name, &[Some(count)], &expected);
     let columns = [
         a.values,
         column(table.alpha_rad, "alpha_rad")?.values,
@@ -148,14 +151,14 @@ pub(crate) fn from_dh(table: &DhTable<'_, '_>, naming: &Naming<'_, '_>) -> PyRes
         Some(kinds) => {
             check_count("kinds", kinds.len(), count)?;
             let words = [("revolute", "revolute"), ("prismatic", "prismatic")];
-            kinds.iter().map(|kind| chosen("kinds", kind, &words)).collect::<PyResult<_>>()?
+            kinds.iter().map(|kind| choose_word("kinds", kind, &words)).collect::<PyResult<_>>()?
         }
         None => vec!["revolute"; count],
     };
     let (names, limits) = (naming.joints(count)?, naming.limits(count)?);
     let mut text = format!("convention = \"{convention}\"\njoint = [\n");
     for (row, ((name, kind), limits)) in names.iter().zip(kinds).zip(&limits).enumerate() {
-        let name = quoted(name);
+        let name = quote_toml(name);
         let _ = write!(text, "{{ name = {name}, type = \"{kind}\"");
         for (key, values) in ["a", "alpha", "d", "theta"].iter().zip(&columns) {
             let _ = write!(text, ", {key} = {:?}", values.get(row).copied().unwrap_or_default());

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use poecal_calibrate::{
-    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, RepairLimits, Repaired,
-    Stage, calibrate_repairing, settle_sets,
+    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, CalibrationStage, Corrections,
+    RepairLimits, RepairedSession, calibrate_repairing, settle_sets,
 };
 use poecal_cli::words;
 use poecal_formats::abb::AbbCalibration;
 use poecal_import::MeasurementFile;
-use poecal_lou2009::{Residual, formulated};
+use poecal_lou2009::{PaperResidual, to_formulation};
 use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
 use poecal_model::robot::{GravityDirection, Tolerance};
 use poecal_numerics::error::ErrorKind;
@@ -21,7 +21,7 @@ use poecal_results::record::Record;
 use poecal_storage::named_files::refuse_fitted;
 use pyo3::prelude::*;
 
-use crate::arguments::{self as arg, Believed, Function};
+use crate::arguments::{self as arg, CallableArgument, PriorTolerance};
 use crate::calibration::Calibration;
 use crate::errors::{argument, raise};
 use crate::measurements::Measurements;
@@ -106,7 +106,7 @@ use crate::words::{frame as frame_word, from_mm, one_of, sigma, sigmas};
 /// SolverError
 ///     No finite result is reached.
 #[pyfunction]
-#[pyo3(signature = (robot, measurements, *, device_frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
+#[pyo3(signature = (robot, measurements, *, device_frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=PriorTolerance::Given((0.5, 5.0)),
                     corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", repair="auto", repair_limit=None, formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
         text_signature = "(robot, measurements, *, device_frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', repair='auto', repair_limit=None, formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
@@ -117,7 +117,7 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
-    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
+    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: PriorTolerance,
     #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
     #[pyo3(from_py_with = arg::harmonics)] harmonics: u32,
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
@@ -136,7 +136,7 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
     #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
     #[pyo3(from_py_with = arg::record)] record: Option<Record>,
-    #[pyo3(from_py_with = arg::progress)] progress: Option<Function>,
+    #[pyo3(from_py_with = arg::progress)] progress: Option<CallableArgument>,
 ) -> PyResult<Calibration> {
     let robot = paths::robot(robot)?;
     let measurements = paths::measurements(measurements, "measurements", &robot)?;
@@ -144,13 +144,13 @@ pub(crate) fn calibrate(
     let (robot, measurements, validate) =
         (robot.get(), measurements.get(), validate.as_ref().map(Bound::get));
     let usual = CalibrationOptions::default();
-    let (formulation, residual) = written(formulation, residual, method)?;
+    let (formulation, residual) = formulation_from_words(formulation, residual, method)?;
     let options = CalibrationOptions {
         frame: frame_word(device_frame)?,
         blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
-        sigma: stated(sigmas(sigma_position_mm, sigma_rotation_deg)?),
+        sigma: noise_by_quantity(sigmas(sigma_position_mm, sigma_rotation_deg)?),
         tolerance: tolerance(&tolerance_deg_mm)?,
-        chooses_tolerance: tolerance_deg_mm == Believed::Auto,
+        chooses_tolerance: tolerance_deg_mm == PriorTolerance::Auto,
         corrections: corrections.unwrap_or_default(),
         harmonics: orders(harmonics)?,
         gravity: gravity.unwrap_or(usual.gravity),
@@ -172,8 +172,8 @@ pub(crate) fn calibrate(
 }
 
 /// Stated noise of positions and rotations.
-fn stated([position, rotation]: [Option<f64>; 2]) -> ByQuantity<Option<f64>> {
-    ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation)
+fn noise_by_quantity([position, rotation]: [Option<f64>; 2]) -> ByQuantity<Option<f64>> {
+    ByQuantity::default().with_value(Quantity::Position, position).with_value(Quantity::Rotation, rotation)
 }
 
 /// The rows of a calibration: its measurements, or those that remained.
@@ -191,16 +191,16 @@ fn kept_rows(
 }
 
 /// The formulation that these words name, and its residual.
-fn written(
+fn formulation_from_words(
     formulation: &str,
     residual: &str,
     method: Option<&str>,
-) -> PyResult<(poecal_calibrate::Formulation, Residual)> {
+) -> PyResult<(poecal_calibrate::Formulation, PaperResidual)> {
     let formulation = one_of("formulation", formulation, words::FORMULATION)?;
     let residual = one_of("residual", residual, words::RESIDUAL)?;
     let method = method.map(|word| one_of("method", word, words::METHOD)).transpose()?;
     let method = method.unwrap_or_else(|| formulation.usual_method());
-    Ok((formulated(formulation, residual, method), residual))
+    Ok((to_formulation(formulation, residual, method), residual))
 }
 
 /// Limits for the model of this name.
@@ -212,7 +212,7 @@ pub(crate) fn accept_limits(
     let limits = accept.map(|it| it.limits).unwrap_or_default();
     // The default may have been written out, which requests nothing.
     let named = (model != AcceptedModel::default()).then_some(model);
-    AcceptanceLimits::chosen(limits, named).map_err(|error| argument("accept_model", error.message()))
+    AcceptanceLimits::from_choice(limits, named).map_err(|error| argument("accept_model", error.message()))
 }
 
 /// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.
@@ -221,12 +221,12 @@ fn fit(
     model: &Model,
     data: &Dataset,
     options: &CalibrationOptions,
-    progress: Option<Function>,
+    progress: Option<CallableArgument>,
 ) -> PyResult<(poecal_calibrate::Calibration, Option<Dataset>, Duration)> {
     let options = &CalibrationOptions { devices: model.devices_of(data), ..options.clone() };
     let mut raised = None;
-    let mut tell = |stage: Stage| {
-        if let (Some(Function(progress)), None) = (&progress, &raised) {
+    let mut tell = |stage: CalibrationStage| {
+        if let (Some(CallableArgument(progress)), None) = (&progress, &raised) {
             raised = Python::attach(|py| progress.call1(py, (stage.words(),)).err());
         }
     };
@@ -237,7 +237,7 @@ fn fit(
     if let Some(raised) = raised {
         return Err(raised);
     }
-    let Repaired { calibration: found, data } = found.map_err(raise)?;
+    let RepairedSession { calibration: found, data } = found.map_err(raise)?;
     let repaired = match data {
         Cow::Borrowed(_) => None,
         Cow::Owned(data) => Some(data),
@@ -285,9 +285,9 @@ fn rows<'a>(
     Ok(data)
 }
 
-fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: Residual) -> PyResult<()> {
+fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: PaperResidual) -> PyResult<()> {
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
-    if residual == Residual::default() || poses {
+    if residual == PaperResidual::default() || poses {
         return Ok(());
     }
     let words = residual.word();
@@ -320,16 +320,16 @@ fn orders(harmonics: u32) -> PyResult<u8> {
 }
 
 /// A tolerance in SI.
-pub(crate) fn tolerance(believed: &Believed) -> PyResult<Option<Tolerance>> {
+pub(crate) fn tolerance(believed: &PriorTolerance) -> PyResult<Option<Tolerance>> {
     match believed {
-        Believed::Given((angle_deg, length_mm)) => Ok(Some(Tolerance {
+        PriorTolerance::Given((angle_deg, length_mm)) => Ok(Some(Tolerance {
             angle_rad: sigma("tolerance_deg_mm", *angle_deg, f64::to_radians)?,
             length_m: sigma("tolerance_deg_mm", *length_mm, from_mm)?,
         })),
-        Believed::Of(path) => {
+        PriorTolerance::Of(path) => {
             AbbCalibration::read(path).and_then(|found| found.tolerance(path)).map(Some).map_err(raise)
         }
-        Believed::None => Ok(None),
-        Believed::Auto => Ok(CalibrationOptions::default().tolerance),
+        PriorTolerance::None => Ok(None),
+        PriorTolerance::Auto => Ok(CalibrationOptions::default().tolerance),
     }
 }

@@ -12,7 +12,7 @@ mod poses;
 mod programs;
 mod report_place;
 mod results;
-mod validated;
+mod validation;
 
 pub(crate) use content::Calibration;
 use content::part;
@@ -71,19 +71,19 @@ impl Calibration {
         let urdf = file.original_urdf(&path).map_err(raise)?;
         let source = urdf.map_or(ModelSource::Toml, |document| ModelSource::Urdf(Box::new(document)));
         let nominal = Robot::new(Model { robot: nominal, source, path });
-        Ok(Calibration::written(nominal, robot, file, residuals, summary))
+        Ok(Calibration::from_files(nominal, robot, file, residuals, summary))
     }
 
     /// The calibrated robot, with the targets in its tip frame.
     #[getter]
     fn robot(&self) -> PyResult<Robot> {
-        Ok(self.calibrated()?.clone())
+        Ok(self.calibrated_robot()?.clone())
     }
 
     /// The corrected robot, with compliant joints and terms beside its joints; None if no terms were requested.
     #[getter]
     fn corrected_robot(&self) -> PyResult<Option<Robot>> {
-        Ok(self.corrected()?.cloned())
+        Ok(self.optional_corrected_robot()?.cloned())
     }
 
     /// Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were requested.
@@ -101,13 +101,13 @@ impl Calibration {
     /// Errors of the nominal, registered, calibrated and corrected model on fitted and held-out rows.
     #[getter]
     fn accuracy(&self) -> Accuracy {
-        Accuracy::new(self.errors(), self.delivered())
+        Accuracy::new(self.errors(), self.delivered_model())
     }
 
     /// Permitted use of the calibration, and the reasons against a wider one; an error for a file that does not state it.
     #[getter]
     fn verdict(&self) -> PyResult<Verdict> {
-        self.judged().cloned().map(Verdict)
+        self.require_verdict().cloned().map(Verdict)
     }
 
     /// Result of the requested acceptance limits: `acceptance` of calibration.json; None if none were requested.
@@ -249,13 +249,13 @@ impl Calibration {
             None => (&file.accuracy.training, "fitted"),
         };
         let verdict = file.verdict.as_ref().map_or("no verdict", |verdict| verdict.level.words());
-        let delivered = self.delivered();
+        let delivered = self.delivered_model();
         let after = match delivered {
             AcceptedModel::Corrected => set.corrected.unwrap_or(set.calibrated),
             AcceptedModel::Calibrated => set.calibrated,
         };
         let [before, error] = [set.registered, after].map(|it| number(it.lead().rms));
-        let unit = after.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol());
+        let unit = after.leading_value().map_or("mm", |(quantity, _)| quantity.unit().symbol());
         let expected = file.verdict.as_ref().and_then(|verdict| verdict.expected_error_mm);
         let expected = expected.map_or_else(String::new, |it| format!(", {} mm expected", number(it)));
         format!(
@@ -267,7 +267,7 @@ impl Calibration {
     }
 
     fn _repr_html_(&self) -> String {
-        notebook::calibration(self.file(), self.delivered(), &self.warnings())
+        notebook::calibration(self.file(), self.delivered_model(), &self.warnings())
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

@@ -7,16 +7,16 @@ use numpy::PyArray2;
 use poecal_import as measurements;
 use poecal_import::{ColumnMap, ReadOptions};
 use poecal_model::offsets::into_screws;
-use poecal_numerics::error::nearest;
+use poecal_numerics::error::nearest_word;
 use poecal_results::calibration_file::CalibrationFile;
 use poecal_results::model::{Model, convert as converted};
-use poecal_results::output::Existing;
+use poecal_results::output::ExistingFiles;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
 use crate::arrays::table;
 use crate::errors::{argument, raise};
-use crate::places::reserved_file;
+use crate::output_places::reserved_file;
 use crate::robot::{Robot, form};
 
 /// A robot in another form, as a text, and as a file too if one is named.
@@ -50,7 +50,7 @@ pub(crate) fn export(
     #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<String> {
     let form = form(format, out.as_deref())?;
-    let reserved = |out| reserved_file(py, out, Existing::forced(force), &[&robot.model.path]);
+    let reserved = |out| reserved_file(py, out, ExistingFiles::from_switch(force), &[&robot.model.path]);
     let place = out.as_deref().map(reserved).transpose()?;
     let mut model = Model::clone(&robot.model);
     if let Some(offset) = offset {
@@ -76,7 +76,7 @@ fn offsets(
     let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
     for (name, value) in stated {
         if !names.contains(&name.as_str()) {
-            let hint = nearest(name, names.iter().copied())
+            let hint = nearest_word(name, names.iter().copied())
                 .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
             let message =
                 format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "));

@@ -83,11 +83,11 @@ pub(crate) fn python_words(message: &str) -> String {
     let is_others =
         |(at, piece): (usize, &str)| at % 2 == 1 && !piece.starts_with("--") && !piece.starts_with("poecal");
     let pieces = message.split('`').enumerate();
-    let words = pieces.map(|it| if is_others(it) { it.1.to_owned() } else { renamed(it.1) });
+    let words = pieces.map(|it| if is_others(it) { it.1.to_owned() } else { rename_options(it.1) });
     words.collect::<Vec<_>>().join("`")
 }
 
-fn renamed(message: &str) -> String {
+fn rename_options(message: &str) -> String {
     let mut words = String::with_capacity(message.len());
     let mut rest = message;
     while let Some(at) = rest.find("--") {

@@ -1,7 +1,7 @@
 //! `hand_eye` and `tcp`: a camera, or the tip of a tool, from poses of the flange.
 
 use poecal_arm::lie::Pose;
-use poecal_cli::words::{self, Words};
+use poecal_cli::words::{self, WordList};
 use poecal_fit::hand_eye::{self as solved, HandEyeOptions, Touches};
 use poecal_import::{FlangePoses, PosePairs};
 use poecal_report as report;
@@ -10,16 +10,16 @@ use poecal_results::tcp::ToolResult;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
-use crate::arrays::{Numbers, pose_of};
+use crate::arrays::{NumberArray, pose_of};
 use crate::errors::{argument, raise};
 use crate::findings::Findings;
 use crate::words::one_of;
 
 /// Poses of an array of shape (m, 4, 4).
-fn stacked(value: &Bound<'_, PyAny>, name: &str, count: Option<usize>) -> PyResult<Vec<Pose>> {
+fn stack_poses(value: &Bound<'_, PyAny>, name: &str, count: Option<usize>) -> PyResult<Vec<Pose>> {
     let many = count.map_or("m".to_owned(), |count| count.to_string());
     let expected = format!("shape ({many}, 4, 4): a pose in each row, metres");
-    let numbers = Numbers::finite_of(value, name, &[count, Some(4), Some(4)], &expected)?;
+    let numbers = NumberArray::finite_of(value, name, &[count, Some(4), Some(4)], &expected)?;
     let rows = numbers.values.chunks_exact(16).enumerate();
     rows.map(|(row, numbers)| {
         pose_of(numbers).map_err(|message| argument(name, format!("row {row}: {message}")))
@@ -42,7 +42,7 @@ fn row_names(names: Vec<String>, count: usize) -> Vec<String> {
 }
 
 /// Meaning of a word for an inversion.
-fn inverted(name: &str, word: Option<&str>, words: Words<bool>) -> PyResult<Option<bool>> {
+fn inversion_from_word(name: &str, word: Option<&str>, words: WordList<bool>) -> PyResult<Option<bool>> {
     word.map(|word| one_of(name, word, words)).transpose()
 }
 
@@ -84,12 +84,12 @@ pub(crate) fn hand_eye(
     #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
     #[pyo3(from_py_with = arg::frame_names)] frame_names: Option<Vec<String>>,
 ) -> PyResult<Findings> {
-    let arm = stacked(base_from_flange, "base_from_flange", None)?;
-    let seen = stacked(camera_from_target, "camera_from_target", Some(arm.len()))?;
+    let arm = stack_poses(base_from_flange, "base_from_flange", None)?;
+    let seen = stack_poses(camera_from_target, "camera_from_target", Some(arm.len()))?;
     let options = HandEyeOptions {
         camera: one_of("camera", camera, words::HAND_EYE_CAMERA)?,
-        flange_inverted: inverted("flange", flange, words::FLANGE_POSES)?,
-        target_inverted: inverted("target", target, words::TARGET_POSES)?,
+        flange_inverted: inversion_from_word("flange", flange, words::FLANGE_POSES)?,
+        target_inverted: inversion_from_word("target", target, words::TARGET_POSES)?,
     };
     let names = row_names(texts(names, "names", arm.len())?, arm.len());
     let frames = match frame_names {
@@ -107,7 +107,7 @@ pub(crate) fn hand_eye(
     let json = result.to_text().map_err(raise)?;
     let answer = report::hand_eye_answer(&result);
     let told = Findings::of_json("HandEye", report::hand_eye(&result), answer, json);
-    Ok(told.warned(&sentences(&found.findings)))
+    Ok(told.with_warnings(&sentences(&found.findings)))
 }
 
 /// The tip of a tool from poses of the flange in which it touched a fixed point.
@@ -138,7 +138,7 @@ pub(crate) fn tcp(
     #[pyo3(from_py_with = arg::tips)] tips: Option<Vec<String>>,
     #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
 ) -> PyResult<Findings> {
-    let arm = stacked(base_from_flange, "base_from_flange", None)?;
+    let arm = stack_poses(base_from_flange, "base_from_flange", None)?;
     let count = arm.len();
     let poses = FlangePoses {
         touches: Touches {
@@ -155,7 +155,7 @@ pub(crate) fn tcp(
     let json = result.to_text().map_err(raise)?;
     let answer = report::tool_tip_answer(&found);
     let told = Findings::of_json("ToolTip", report::tool_tip(&result), answer, json);
-    Ok(told.warned(&sentences(&found.findings)))
+    Ok(told.with_warnings(&sentences(&found.findings)))
 }
 
 fn sentences(findings: &[solved::Finding]) -> Vec<String> {

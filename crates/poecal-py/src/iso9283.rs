@@ -83,5 +83,5 @@ pub(crate) fn iso9283(
     });
     let (json, test) = found.map_err(raise)?;
     let told = Findings::of_json("Iso9283", report::iso9283(&test), report::iso9283_answer(&test), json);
-    Ok(told.warned(&test.warnings))
+    Ok(told.with_warnings(&test.warnings))
 }

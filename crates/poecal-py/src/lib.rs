@@ -17,9 +17,9 @@ mod iso9283;
 mod measurements;
 mod notebook;
 mod of_model;
+mod output_places;
 mod paths;
 mod pickle;
-mod places;
 mod plan;
 mod prediction;
 mod project;
@@ -36,7 +36,7 @@ use measurements::{from_arrays, from_dataframe, guess};
 
 use calibration::{accuracy, findings, recalibrate, residuals};
 
-use plan::{plan_options, planned, visit_plan};
+use plan::{plan_options, plan_result, visit_plan};
 
 use pyo3::prelude::*;
 
@@ -97,7 +97,7 @@ mod _poecal {
     #[pymodule_export]
     use crate::plan::plan;
     #[pymodule_export]
-    use crate::planned::Plan;
+    use crate::plan_result::Plan;
     #[pymodule_export]
     use crate::prediction::Prediction;
     #[pymodule_export]
@@ -218,12 +218,12 @@ mod _poecal {
     #[pyfunction]
     fn _renamed(word: &str, words: Vec<String>) -> Option<String> {
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        poecal_results::renamed::new_key(word, &words).map(str::to_owned)
+        poecal_results::renamed_words::new_key(word, &words).map(str::to_owned)
     }
 
     /// The most similar of some words.
     #[pyfunction]
     fn _nearest(word: &str, words: Vec<String>) -> Option<String> {
-        poecal_numerics::error::nearest(word, words.iter().map(String::as_str)).map(str::to_owned)
+        poecal_numerics::error::nearest_word(word, words.iter().map(String::as_str)).map(str::to_owned)
     }
 }

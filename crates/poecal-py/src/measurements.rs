@@ -28,11 +28,11 @@ use crate::rows;
 #[pymethods]
 impl Measurements {
     fn __add__(&self, other: &Measurements) -> PyResult<Self> {
-        Measurements::joined(&[self, other])
+        Measurements::join_parts(&[self, other])
     }
 
     fn __getitem__(&self, rows: &Bound<'_, PyAny>) -> PyResult<Self> {
-        self.part(&rows::chosen(rows, self.data().len())?)
+        self.part(&rows::choose_rows(rows, self.data().len())?)
     }
 
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

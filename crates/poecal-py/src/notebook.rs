@@ -39,12 +39,12 @@ pub(crate) fn robot(robot: &Robot, words: &str) -> String {
 
 /// Measurements and the names of their sources.
 pub(crate) fn measurements(words: &str, names: &[String], warnings: &[String]) -> String {
-    visible_markup(html! { div { p { (words) ", from " (names.join(", ")) } (warned(warnings)) } })
+    visible_markup(html! { div { p { (words) ", from " (names.join(", ")) } (warning_markup(warnings)) } })
 }
 
 /// Findings as the program prints them.
 pub(crate) fn findings(text: &str, warnings: &[String]) -> String {
-    visible_markup(html! { div { pre { (text) } (warned(warnings)) } })
+    visible_markup(html! { div { pre { (text) } (warning_markup(warnings)) } })
 }
 
 /// A calibration's verdict and errors; those of the corrected model if it is delivered.
@@ -74,7 +74,7 @@ pub(crate) fn calibration(file: &CalibrationFile, delivered: AcceptedModel, warn
                     }
                 }
             }
-            (warned(warnings))
+            (warning_markup(warnings))
         }
     })
 }
@@ -88,6 +88,6 @@ fn sign(quantity: Quantity) -> &'static str {
     }
 }
 
-fn warned(warnings: &[String]) -> Markup {
+fn warning_markup(warnings: &[String]) -> Markup {
     html! { @for warning in warnings { p { "warning: " (warning) } } }
 }

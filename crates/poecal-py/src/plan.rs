@@ -1,7 +1,7 @@
 //! `plan`: choice of configurations to measure.
 
 pub(crate) mod plan_options;
-pub(crate) mod planned;
+pub(crate) mod plan_result;
 pub(crate) mod visit_plan;
 
 mod session;
@@ -11,10 +11,10 @@ use poecal_model::robot::GravityDirection;
 use poecal_plan::plan::RobotError;
 use pyo3::prelude::*;
 
-use self::session::{Aim, Room, Rows, Session, View};
-use crate::arguments::{self as arg, Believed};
+use self::session::{PlanSession, PlanView, PlanningGoal, PlanningRows, RobotEnvironment};
+use crate::arguments::{self as arg, PriorTolerance};
 use crate::measurements::Measurements;
-use crate::plan_options::Believe;
+use crate::plan_options::PriorBeliefs;
 use crate::visit_plan::VisitOptions;
 
 /// Plans a session: configurations that determine the most, rows for validation, the worthwhile number, and the expected error.
@@ -105,7 +105,7 @@ use crate::visit_plan::VisitOptions;
 #[pyfunction]
 #[pyo3(signature = (robot, *, purpose="calibration", kind="point", count=None, held_out_count=None, candidates=None, workspace=None, workspace_box_mm=None, keep_rows=None, replace_rows=None,
                     criterion="expected", targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,
-                    device_frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=None,
+                    device_frame="unknown", tolerance_deg_mm=PriorTolerance::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=None,
                     keep_out_mm=None, floor_height_mm=None, separation_deg=None, device_mm=None, device_half_angle_deg=None, device_aim_mm=None,
                     distance_mm=None, target_half_angle_deg=None, target_normal=None, self_collision="avoid", stop_s=30.0, seed=1,
                     earlier=None, device=None, tool=None, repeatability_mm=None, target=None),
@@ -130,7 +130,7 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
     #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
-    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
+    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: PriorTolerance,
     #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
     #[pyo3(from_py_with = arg::margin_deg_mm)] margin_deg_mm: Option<(f64, f64)>,
@@ -153,7 +153,7 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::target)] target: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let visits = VisitOptions { earlier, device, tool, repeatability_mm, target };
-    let believe = Believe {
+    let believe = PriorBeliefs {
         sigma_position_mm,
         sigma_rotation_deg,
         robot_error_mm,
@@ -162,11 +162,12 @@ pub(crate) fn plan<'py>(
         corrections,
         gravity,
     };
-    let rows = Rows { count, held_out_count, candidates, keep_rows, replace_rows };
-    let aim = Aim { kind, criterion, workspace, workspace_box_mm, targets, target_offset_mm };
-    let room = Room { margin_deg_mm, keep_out_mm, floor_height_mm, separation_deg, self_collision };
+    let rows = PlanningRows { count, held_out_count, candidates, keep_rows, replace_rows };
+    let aim = PlanningGoal { kind, criterion, workspace, workspace_box_mm, targets, target_offset_mm };
+    let room =
+        RobotEnvironment { margin_deg_mm, keep_out_mm, floor_height_mm, separation_deg, self_collision };
     let of_target = (target_half_angle_deg, target_normal);
-    let view = View { device_mm, device_half_angle_deg, device_aim_mm, distance_mm, of_target };
-    let session = Session { rows, aim, believe, room, view, stop_s, seed };
+    let view = PlanView { device_mm, device_half_angle_deg, device_aim_mm, distance_mm, of_target };
+    let session = PlanSession { rows, aim, believe, room, view, stop_s, seed };
     session.plan_for(purpose, py, robot, &visits)
 }

@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_results::model::Model;
-use poecal_results::output::{Contents, Existing, Project, write_project};
+use poecal_results::output::{Contents, ExistingFiles, Project, write_project};
 use pyo3::prelude::*;
 
-use crate::arguments::{self as arg, Links};
+use crate::arguments::{self as arg, NamedLinks};
 use crate::errors::{argument, raise};
-use crate::places::reserved_folder;
-use crate::words::chosen;
+use crate::output_places::reserved_folder;
+use crate::words::choose_word;
 
 /// Most suggested configurations, as in the program.
 const MOST: usize = 100_000;
@@ -53,17 +53,17 @@ pub(crate) fn init(
     #[pyo3(from_py_with = arg::seed)] seed: u64,
     #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
     #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
-    #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
-    #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
+    #[pyo3(from_py_with = arg::instruments)] instruments: Option<NamedLinks>,
+    #[pyo3(from_py_with = arg::targets)] targets: Option<NamedLinks>,
 ) -> PyResult<Vec<String>> {
-    let words = Kind::all().into_iter().filter(|kind| kind.session().plural.is_some());
-    let kind = chosen("kind", kind, &words.map(|kind| (kind.word(), kind)).collect::<Vec<_>>())?;
+    let words = SessionKind::all().into_iter().filter(|kind| kind.session().plural.is_some());
+    let kind = choose_word("kind", kind, &words.map(|kind| (kind.word(), kind)).collect::<Vec<_>>())?;
     if !(1..=MOST).contains(&count) {
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }
     let chain = arg::selection(base_link, tip_link, instruments, targets);
     let model = py.detach(|| Model::read(&model, &chain)).map_err(raise)?;
-    let place = reserved_folder(py, &out, Contents::Project, Existing::Kept, &[])?;
+    let place = reserved_folder(py, &out, Contents::Project, ExistingFiles::Kept, &[])?;
     let project = Project { model: &model, chain: &chain, kind, count, seed };
     let written = py.detach(|| write_project(place, &project)).map_err(raise)?;
     crate::warn(py, &written.notes)?;

@@ -6,20 +6,21 @@ use std::path::Path;
 use numpy::{PyArray1, PyArrayMethods as _};
 use poecal_arm::lie::Pose;
 use poecal_compensate::{
-    ChangeOptions, Compensation, Inverse, Kinematics, Language, MostChange, ProgramOptions, compensate_file,
+    ChangeOptions, Compensation, Inverse, Kinematics, Language, MaxCorrection, ProgramOptions,
+    compensate_file,
 };
 use poecal_model::robot::Robot;
-use poecal_model::robot::{Counting, JointKind};
+use poecal_model::robot::{ControllerMap, JointKind};
 use poecal_results::calibration_file::CalibrationFile;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-use crate::arrays::{Numbers, pose_of, table};
+use crate::arrays::{NumberArray, pose_of, table};
 use crate::errors::{argument, raise};
 use crate::findings::Findings;
 use crate::robot::{Robot as Described, poses};
-use crate::words::{chosen, from_mm};
+use crate::words::{choose_word, from_mm};
 
 /// Values of a robot's factors: those of a mapping from their names, else their references.
 pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
@@ -45,29 +46,32 @@ pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResu
 }
 
 /// Configurations of the joints alone, and true if it is a single one.
-fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResult<(Numbers, bool)> {
+fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResult<(NumberArray, bool)> {
     let names = robot.joint_reading_names();
     let n = names.len();
     let expected = format!(
         "shape (m, {n}) or ({n},): in each configuration {} (radians; metres of sliding joints)",
         names.join(", ")
     );
-    let numbers = Numbers::finite(value, name, &expected)?;
+    let numbers = NumberArray::require_finite(value, name, &expected)?;
     let is_single = numbers.shape.len() == 1;
     let wanted: &[Option<usize>] = if is_single { &[Some(n)] } else { &[None, Some(n)] };
-    Ok((numbers.shaped(wanted, name, &expected)?, is_single))
+    Ok((numbers.require_shape(wanted, name, &expected)?, is_single))
 }
 
 /// Mapping from the counts of a calibration's controller to the model's readings, if arrays contain counts; `None` if they contain the model's
 /// readings, or if both are equal.
-pub(crate) fn counting(file: &CalibrationFile, readings: Option<&str>) -> PyResult<Option<Counting>> {
+pub(crate) fn find_controller_map(
+    file: &CalibrationFile,
+    readings: Option<&str>,
+) -> PyResult<Option<ControllerMap>> {
     let is_counted = match readings {
         None => None,
-        Some(word) => Some(chosen("readings", word, &[("controller", true), ("model", false)])?),
+        Some(word) => Some(choose_word("readings", word, &[("controller", true), ("model", false)])?),
     };
     let Some(sums) = file.controller.as_ref().filter(|it| !it.is_plain()) else { return Ok(None) };
     match is_counted {
-        Some(true) => sums.counting().map(Some).map_err(raise),
+        Some(true) => sums.controller_map().map(Some).map_err(raise),
         Some(false) => Ok(None),
         None => Err(argument(
             "readings",
@@ -81,7 +85,11 @@ pub(crate) fn counting(file: &CalibrationFile, readings: Option<&str>) -> PyResu
 }
 
 /// The model's readings for rows of counted ones; numbers beyond those of the joints stay.
-pub(crate) fn to_model<'r>(counting: Option<&Counting>, rows: &'r [f64], width: usize) -> Cow<'r, [f64]> {
+pub(crate) fn to_model<'r>(
+    counting: Option<&ControllerMap>,
+    rows: &'r [f64],
+    width: usize,
+) -> Cow<'r, [f64]> {
     let Some(counting) = counting else { return Cow::Borrowed(rows) };
     let row = |row: &[f64]| {
         let mut made = counting.readings(row);
@@ -107,7 +115,7 @@ fn rows<'py>(
 
 /// Largest motion of a joint: in degrees and millimetres, or as before in radians and metres.
 #[derive(Clone, Copy)]
-pub(crate) struct Most {
+pub(crate) struct MaxCorrectionArgument {
     pub(crate) turn_deg: Option<f64>,
     pub(crate) slide_mm: Option<f64>,
     pub(crate) turn_rad: Option<f64>,
@@ -115,8 +123,8 @@ pub(crate) struct Most {
 }
 
 /// Largest permitted changes of readings.
-pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
-    let usual = MostChange::default();
+pub(crate) fn change(nearest: bool, most: MaxCorrectionArgument) -> PyResult<ChangeOptions> {
+    let usual = MaxCorrection::default();
     let one_of = |names: [&str; 2], values: [Option<f64>; 2], to_si: fn(f64) -> f64, usual: f64| {
         let (name, value, si) = match values {
             [Some(_), Some(_)] => {
@@ -134,7 +142,7 @@ pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
     };
     let turn = [most.turn_deg, most.turn_rad];
     let slide = [most.slide_mm, most.slide_m];
-    let most_change = MostChange {
+    let most_change = MaxCorrection {
         turning_rad: one_of(["max_turn_deg", "max_turn_rad"], turn, f64::to_radians, usual.turning_rad)?,
         sliding_m: one_of(["max_slide_mm", "max_slide_m"], slide, from_mm, usual.sliding_m)?,
     };
@@ -145,7 +153,7 @@ pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
 pub(crate) fn compensate<'py>(
     py: Python<'py>,
     (nominal, actual): (&Robot, &Robot),
-    (joints, counting): (&Bound<'py, PyAny>, Option<&Counting>),
+    (joints, counting): (&Bound<'py, PyAny>, Option<&ControllerMap>),
     factors: &[f64],
     options: &ChangeOptions,
     summary: bool,
@@ -159,7 +167,7 @@ pub(crate) fn compensate<'py>(
         if let Some(counting) = counting {
             let rows = meant.chunks_exact(n).zip(numbers.values.chunks_exact(n));
             for (to, (from, counted)) in made.chunks_exact_mut(n).zip(rows) {
-                let moved = counting.moved(counted, from, to);
+                let moved = counting.moved_readings(counted, from, to);
                 to.copy_from_slice(&moved);
             }
         }
@@ -172,7 +180,7 @@ pub(crate) fn compensate<'py>(
     }
     let what = if found.rows == 1 { "row corrected" } else { "rows corrected" };
     let text = found.text(&slides(actual), what);
-    let found = Findings::new("Compensation", text, found.answer(), &found)?.warned(&found.warnings());
+    let found = Findings::new("Compensation", text, found.answer(), &found)?.with_warnings(&found.warnings());
     (made, found.into_pyobject(py)?).into_bound_py_any(py)
 }
 
@@ -185,7 +193,7 @@ pub(crate) fn language(path: &Path, named: Option<&str>) -> PyResult<Language> {
         ("fanuc", Language::Fanuc),
     ];
     match named {
-        Some(word) => chosen("language", word, &words),
+        Some(word) => choose_word("language", word, &words),
         None => Language::of_name(path).map_err(raise)?.ok_or_else(|| {
             let message = format!(
                 "found no language for {}, expected one of urscript, rapid, krl, fanuc where the end of the file's name does not tell",
@@ -207,7 +215,8 @@ pub(crate) fn program<'py>(
     let (text, summary) = py.detach(|| compensate_file(path, robots, factors, options)).map_err(raise)?;
     crate::warn(py, &summary.changes.warnings())?;
     let (changes, table) = (&summary.changes, summary.text(&slides(robots.1)));
-    let found = Findings::new("Compensation", table, changes.answer(), &summary)?.warned(&changes.warnings());
+    let found =
+        Findings::new("Compensation", table, changes.answer(), &summary)?.with_warnings(&changes.warnings());
     Ok((PyBytes::new(py, &text), found.into_pyobject(py)?))
 }
 
@@ -219,10 +228,10 @@ fn slides(robot: &Robot) -> impl Fn(&str) -> bool + '_ {
 /// Poses of an array of shape (m, 4, 4) or (4, 4), and true if it is a single one.
 fn targets(value: &Bound<'_, PyAny>) -> PyResult<(Vec<Pose>, bool)> {
     let expected = "poses of the tip in the base, shape (m, 4, 4) or (4, 4)";
-    let numbers = Numbers::finite(value, "poses", expected)?;
+    let numbers = NumberArray::require_finite(value, "poses", expected)?;
     let is_single = numbers.shape.len() == 2;
     let wanted: &[Option<usize>] = if is_single { &[Some(4), Some(4)] } else { &[None, Some(4), Some(4)] };
-    let numbers = numbers.shaped(wanted, "poses", expected)?;
+    let numbers = numbers.require_shape(wanted, "poses", expected)?;
     let pose = |(row, it): (usize, &[f64])| {
         pose_of(it).map_err(|message| {
             argument("poses", if is_single { message } else { format!("row {row}: {message}") })
@@ -287,7 +296,7 @@ pub(crate) fn inverse<'py>(
         inverse.of_many(&targets, |inverse, row, target| {
             let start = if one { 0 } else { row * n };
             let start = near.values.get(start..start + n).unwrap_or_default();
-            inverse.nearest(target, start, limits).unwrap_or_else(|| vec![f64::NAN; n])
+            inverse.solve_nearest(target, start, limits).unwrap_or_else(|| vec![f64::NAN; n])
         })
     });
     rows(py, found.concat(), n, is_single)
@@ -295,7 +304,7 @@ pub(crate) fn inverse<'py>(
 
 /// The error of an arm whose branches are not all found.
 fn without_branches(robot: &Robot, inverse: &Inverse) -> PyErr {
-    let message = match inverse.redundant() {
+    let message = match inverse.redundant_joint() {
         Some(reading) => format!(
             "found None, expected a configuration from which to start, or held={{\"{}\": value}}: an arm of seven joints has \
              branches where one of them is held",
@@ -315,7 +324,7 @@ fn held_reading(
     poses: usize,
 ) -> PyResult<(usize, Vec<f64>)> {
     let names = robot.joint_reading_names();
-    if inverse.redundant().is_none() {
+    if inverse.redundant_joint().is_none() {
         let message = "found a reading that is held, expected none: only an arm of seven turning joints has one more than it needs";
         return Err(argument("held", message.to_owned()));
     }
@@ -334,17 +343,19 @@ fn held_reading(
         Ok(value) if value.is_finite() => vec![value],
         Ok(value) => return Err(argument("held", format!("found {value}, {expected}"))),
         Err(_) => {
-            Numbers::finite(&value, "held", &expected)?.shaped(&[Some(poses)], "held", &expected)?.values
+            NumberArray::require_finite(&value, "held", &expected)?
+                .require_shape(&[Some(poses)], "held", &expected)?
+                .values
         }
     };
     Ok((reading, values))
 }
 
 /// Poses of the tip.
-pub(crate) fn forward<'py>(
+pub(crate) fn forward_kinematics<'py>(
     py: Python<'py>,
     robot: &Robot,
-    (joints, counting): (&Bound<'py, PyAny>, Option<&Counting>),
+    (joints, counting): (&Bound<'py, PyAny>, Option<&ControllerMap>),
     factors: &[f64],
 ) -> PyResult<Bound<'py, PyAny>> {
     let (numbers, is_single) = configurations(joints, "joints", robot)?;

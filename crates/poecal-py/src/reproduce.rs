@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use poecal_lou2009::{self as experiments, report as reproduced};
 use poecal_report as report;
-use poecal_results::output::{self, Contents, Existing};
+use poecal_results::output::{self, Contents, ExistingFiles};
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
 use crate::errors::raise;
 use crate::findings::Findings;
-use crate::places::reserved_folder;
-use crate::words::chosen;
+use crate::output_places::reserved_folder;
+use crate::words::choose_word;
 
 /// Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.
 ///
@@ -46,26 +46,27 @@ pub(crate) fn reproduce(
     #[pyo3(from_py_with = arg::seed)] seed: u64,
 ) -> PyResult<Findings> {
     #[derive(Clone, Copy)]
-    enum Experiment {
+    enum PaperExperiment {
         Lou2009,
         Breakdown,
     }
-    let words = [("lou2009", Experiment::Lou2009), ("breakdown", Experiment::Breakdown)];
-    let experiment = chosen("experiment", experiment, &words)?;
+    let words = [("lou2009", PaperExperiment::Lou2009), ("breakdown", PaperExperiment::Breakdown)];
+    let experiment = choose_word("experiment", experiment, &words)?;
     let options = experiments::ReproductionOptions { trials: trials as usize, starts: starts as usize, seed };
-    let reserved =
-        |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
+    let reserved = |folder: &PathBuf| {
+        reserved_folder(py, folder, Contents::Reproduction, ExistingFiles::from_switch(force), &[])
+    };
     let place = out.as_ref().map(reserved).transpose()?;
     let work = || {
         let (json, words, answer, files) = match experiment {
-            Experiment::Lou2009 => {
+            PaperExperiment::Lou2009 => {
                 let found = experiments::lou2009(&options)?;
-                let (holding, all) = found.holding(true);
+                let (holding, all) = found.count_holding(true);
                 let answer = format!("{holding} of {all} claims of the paper hold as they are made");
                 let files = reproduced::reproduction_files(&found)?;
                 (report::json(&found)?, reproduced::claims(&found), answer, files)
             }
-            Experiment::Breakdown => {
+            PaperExperiment::Breakdown => {
                 let found = experiments::breakdown(&options)?;
                 let answer = format!(
                     "errors by share of gross errors, from {} sessions of {} rows",

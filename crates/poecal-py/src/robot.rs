@@ -8,18 +8,18 @@ pub(crate) use content::{Robot, RobotState, form, poses};
 use std::path::PathBuf;
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
-use poecal_results::output::Existing;
-use poecal_results::predictions::{PredictionFrame, predicted};
+use poecal_results::output::ExistingFiles;
+use poecal_results::predictions::{PredictionFrame, predict_readings};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::arguments as arg;
-use crate::arrays::{Joints, pose_array, pose_arrays, table};
+use crate::arrays::{JointArray, pose_array, pose_arrays, table};
 use crate::errors::raise;
 use crate::notebook;
+use crate::output_places::reserved_file;
 use crate::pickle;
-use crate::places::reserved_file;
 
 #[pymethods]
 impl Robot {
@@ -43,10 +43,10 @@ impl Robot {
         joints: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arg::target)] target: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let joints = Joints::from_argument(joints, self.robot())?;
+        let joints = JointArray::from_argument(joints, self.robot())?;
         let model = &self.model;
         let found = py
-            .detach(|| predicted(model, &joints.readings, PredictionFrame::Base, target, false))
+            .detach(|| predict_readings(model, &joints.readings, PredictionFrame::Base, target, false))
             .map_err(raise)?;
         poses(py, &found.poses, joints.single)
     }
@@ -64,7 +64,7 @@ impl Robot {
     ///     Poses of shape (m, n, 4, 4), or (n, 4, 4) for one configuration.
     fn joint_poses<'py>(&self, py: Python<'py>, joints: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.robot();
-        let joints = Joints::from_argument(joints, robot)?;
+        let joints = JointArray::from_argument(joints, robot)?;
         let configurations = joints.readings.chunks_exact(robot.reading_names().len().max(1));
         let rows = configurations.len();
         let frames: Vec<_> = configurations.flat_map(|readings| robot.joint_poses(readings)).collect();
@@ -193,7 +193,7 @@ impl Robot {
     ///     The text.
     #[pyo3(signature = (format))]
     fn to_text(&self, py: Python<'_>, #[pyo3(from_py_with = arg::format)] format: &str) -> PyResult<String> {
-        self.converted(py, form(Some(format), None)?)
+        self.convert_to(py, form(Some(format), None)?)
     }
 
     /// Writes the model to a file.
@@ -215,8 +215,8 @@ impl Robot {
         #[pyo3(from_py_with = arg::force)] force: bool,
     ) -> PyResult<()> {
         let form = form(format, Some(&path))?;
-        let place = reserved_file(py, &path, Existing::forced(force), &[&self.model.path])?;
-        place.write(vec![self.converted(py, form)?.into()]).map_err(raise)
+        let place = reserved_file(py, &path, ExistingFiles::from_switch(force), &[&self.model.path])?;
+        place.write(vec![self.convert_to(py, form)?.into()]).map_err(raise)
     }
 
     fn __repr__(&self) -> String {

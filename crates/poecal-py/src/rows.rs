@@ -4,14 +4,14 @@ use poecal_model::measurement::Dataset;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PySlice};
 
-use crate::arguments::unexpected;
+use crate::arguments::unexpected_error;
 use crate::errors::{argument, no_row, raise};
 
 /// Permitted keys of rows.
 const KEYS: &str = "a slice, a row, a list of rows, or a True or False for each row";
 
 /// The rows that `key` chooses of `count`, as NumPy does: a slice, an integer, integers, or a mask.
-pub(crate) fn chosen(key: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<usize>> {
+pub(crate) fn choose_rows(key: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<usize>> {
     if let Ok(slice) = key.cast::<PySlice>() {
         let length = isize::try_from(count).unwrap_or(isize::MAX);
         let found = slice.indices(length)?;
@@ -21,7 +21,7 @@ pub(crate) fn chosen(key: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<usize
     if let Some(row) = integer(key) {
         return Ok(vec![row_of(row, count)?]);
     }
-    let entries: Vec<Bound<'_, PyAny>> = key.extract().map_err(|_| unexpected("rows", key, KEYS))?;
+    let entries: Vec<Bound<'_, PyAny>> = key.extract().map_err(|_| unexpected_error("rows", key, KEYS))?;
     let mask: Option<Vec<bool>> = entries.iter().map(|entry| entry.extract().ok()).collect();
     match mask {
         Some(mask) if mask.len() == count => {
@@ -34,7 +34,7 @@ pub(crate) fn chosen(key: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<usize
         }
         _ => entries
             .iter()
-            .map(|entry| row_of(integer(entry).ok_or_else(|| unexpected("rows", entry, KEYS))?, count))
+            .map(|entry| row_of(integer(entry).ok_or_else(|| unexpected_error("rows", entry, KEYS))?, count))
             .collect(),
     }
 }
@@ -101,7 +101,7 @@ pub(crate) fn part(data: &Dataset, rows: &[usize]) -> PyResult<Dataset> {
 }
 
 /// The rows of all parts, in sequence. Joints, targets and instruments of one name are one.
-pub(crate) fn joined(parts: &[&Dataset]) -> PyResult<Dataset> {
+pub(crate) fn join_datasets(parts: &[&Dataset]) -> PyResult<Dataset> {
     let Some((first, others)) = parts.split_first() else {
         return Err(argument("parts", "found none, expected at least one"));
     };

@@ -5,17 +5,17 @@ use std::path::PathBuf;
 use numpy::PyArray2;
 use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_model::robot::{Corrections, Sizes, TermGroup};
-use poecal_model::simulate::{self as simulated, Kind, Simulated};
-use poecal_numerics::text::visible;
+use poecal_model::simulate::{self as simulated, SessionKind, SimulationResult};
+use poecal_numerics::text::escape_invisible;
 use poecal_results::model::{Model, ModelSource};
-use poecal_results::output::{self, Contents, Existing, SimulatedSession};
+use poecal_results::output::{self, Contents, ExistingFiles, SimulatedSession};
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
 use crate::arrays::pose_array;
 use crate::errors::raise;
 use crate::measurements::Measurements;
-use crate::places::reserved_folder;
+use crate::output_places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{direction, frame as frame_word, from_mm, kind as kind_word, size};
 
@@ -27,8 +27,8 @@ const MOST: usize = 10_000_000;
 pub(crate) struct Simulation {
     nominal: Robot,
     simulation: simulated::Simulation,
-    kind: Kind,
-    made: Simulated,
+    kind: SessionKind,
+    made: SimulationResult,
     held_out: Option<poecal_model::measurement::Dataset>,
     command: String,
 }
@@ -95,7 +95,7 @@ impl Simulation {
             command: &self.command,
         };
         let model = &self.nominal.model;
-        let existing = Existing::forced(force);
+        let existing = ExistingFiles::from_switch(force);
         let place = reserved_folder(py, &folder, Contents::Simulation, existing, &[&model.path])?;
         let written = py.detach(|| output::write_simulation(place, model, &session)).map_err(raise)?;
         crate::warn(py, &written.notes)?;
@@ -188,7 +188,7 @@ pub(crate) fn simulate(
         "poecal.simulate({}, kind=\"{}\", count={count}, seed={seed}, error_position_mm={error_position_mm:?}, \
          error_rotation_deg={error_rotation_deg:?}, noise_position_mm={noise_position_mm:?}, noise_rotation_deg={noise_rotation_deg:?}, \
          device_frame=\"{device_frame}\", held_out_count={held_out_count})",
-        visible(&robot.model.path.display().to_string()),
+        escape_invisible(&robot.model.path.display().to_string()),
         kind.word()
     );
     let command = with_terms(command, &simulation);

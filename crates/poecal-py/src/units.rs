@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 
 use crate::errors::{argument, raise};
-use crate::words::shortened;
+use crate::words::shorten_text;
 
 /// Units that may end the name of an argument.
 const UNITS: [(&str, Unit); 4] =
@@ -27,7 +27,7 @@ pub(crate) fn of_name(name: &str) -> Option<NamedUnit> {
 
 /// A text with a unit as a number in the unit of the argument.
 pub(crate) fn in_unit(text: &str, unit: NamedUnit, name: &str) -> PyResult<f64> {
-    let (value, symbol) = parted(text, name, unit.symbol())?;
+    let (value, symbol) = split_unit(text, name, unit.symbol())?;
     let typed = NamedUnit::parse(symbol, unit.si_unit()).map_err(|error| {
         raise(poecal_numerics::error::Error::new(error.kind(), format!("{name}: {}", error.message())))
     })?;
@@ -37,7 +37,7 @@ pub(crate) fn in_unit(text: &str, unit: NamedUnit, name: &str) -> PyResult<f64> 
 
 /// A text with a unit as a number in radians or metres.
 pub(crate) fn in_si(text: &str, name: &str) -> PyResult<f64> {
-    let (value, symbol) = parted(text, name, "deg")?;
+    let (value, symbol) = split_unit(text, name, "deg")?;
     let typed = NamedUnit::parse_any(symbol).map_err(|error| {
         raise(poecal_numerics::error::Error::new(error.kind(), format!("{name}: {}", error.message())))
     })?;
@@ -45,7 +45,7 @@ pub(crate) fn in_si(text: &str, name: &str) -> PyResult<f64> {
 }
 
 /// A text of several numbers as a list of texts: `"0.5deg,5mm"`, and `"1500,0,800mm"`, whose last unit is that of all; anything else is unchanged.
-pub(crate) fn listed<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn split_list<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let Ok(text) = value.cast::<PyString>() else { return Ok(value.clone()) };
     let text = text.to_string_lossy();
     if of_name(name).is_none() || !text.contains(',') {
@@ -68,13 +68,13 @@ fn begins_unit(letter: char) -> bool {
 }
 
 /// The number and the symbol of its unit.
-fn parted<'t>(text: &'t str, name: &str, example: &str) -> PyResult<(f64, &'t str)> {
+fn split_unit<'t>(text: &'t str, name: &str, example: &str) -> PyResult<(f64, &'t str)> {
     let at = text.find(begins_unit).unwrap_or(text.len());
     let (number, symbol) = text.split_at(at);
     match number.trim().parse::<f64>() {
         Ok(value) if value.is_finite() && !symbol.is_empty() => Ok((value, symbol.trim())),
         _ => {
-            let found = shortened(text);
+            let found = shorten_text(text);
             let message = format!(
                 "found the text `{found}`, expected a number, or a text of one with its unit, like \"0.05{example}\""
             );

@@ -5,22 +5,22 @@ use std::sync::{Mutex, PoisonError};
 use poecal_calibrate::Corrections;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::GravityDirection;
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_plan::plan::{PlannedFit, RobotError, Watch as Watched, WatchOptions};
 use poecal_report as report;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arguments::{self as arg, Believed, refuse_unknown};
+use crate::arguments::{self as arg, PriorTolerance, refuse_unknown};
 use crate::errors::{argument, raise};
 use crate::findings::Findings;
 use crate::from_arrays::{ArrayColumns, dataset};
 use crate::measurements::Measurements;
-use crate::plan_options::{Believe, configurations, workspace as workspace_of};
+use crate::plan_options::{PriorBeliefs, configurations, workspace as workspace_of};
 use crate::robot::Robot;
 
 /// Rows that were added, and the session that judges them.
-struct Session {
+struct WatchSession {
     data: Dataset,
     watched: Option<Watched>,
 }
@@ -55,14 +55,14 @@ struct Session {
 pub(crate) struct Watch {
     robot: Robot,
     options: WatchOptions,
-    session: Mutex<Session>,
+    session: Mutex<WatchSession>,
 }
 
 #[pymethods]
 impl Watch {
     #[new]
     #[pyo3(signature = (robot, *, candidates=None, workspace=None, workspace_box_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,
-                        device_frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, seed=1, **unknown),
+                        device_frame="unknown", tolerance_deg_mm=PriorTolerance::Given((0.5, 5.0)), corrections=None, gravity=None, seed=1, **unknown),
             text_signature = "(robot, *, candidates=None, workspace=None, workspace_box_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, device_frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), seed=1)")]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python class")]
     fn new(
@@ -75,14 +75,14 @@ impl Watch {
         #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
         #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
         #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
-        #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
+        #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: PriorTolerance,
         #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
         #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
         #[pyo3(from_py_with = arg::seed)] seed: u64,
         unknown: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         refuse_unknown::<Watch>(py, unknown)?;
-        let believe = Believe {
+        let believe = PriorBeliefs {
             sigma_position_mm,
             sigma_rotation_deg,
             robot_error_mm,
@@ -93,12 +93,12 @@ impl Watch {
         };
         let data = Dataset::new(robot.model.robot.reading_names());
         let options = WatchOptions {
-            fit: believe.fit(&robot.model, Kind::POINT, PlannedFit::default().count)?,
+            fit: believe.fit(&robot.model, SessionKind::POINT, PlannedFit::default().count)?,
             candidates: configurations(candidates, robot)?,
             workspace: workspace_of(robot, workspace, workspace_box_mm, seed)?,
             seed,
         };
-        Ok(Watch { robot: robot.clone(), options, session: Mutex::new(Session { data, watched: None }) })
+        Ok(Watch { robot: robot.clone(), options, session: Mutex::new(WatchSession { data, watched: None }) })
     }
 
     /// Judges one row, and fits it if it is as expected.
@@ -151,7 +151,7 @@ impl Watch {
             length_unit: "m",
         };
         let one = dataset(&self.robot.model.robot, &columns)?;
-        let mut found = self.judged(py, &one)?;
+        let mut found = self.judge_rows(py, &one)?;
         found.pop().ok_or_else(|| argument("joints", "found no row, expected one"))
     }
 
@@ -172,7 +172,7 @@ impl Watch {
         #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
     ) -> PyResult<Vec<Findings>> {
         measurements.check_robot(&self.robot)?;
-        self.judged(py, measurements.data())
+        self.judge_rows(py, measurements.data())
     }
 
     fn __len__(&self) -> usize {
@@ -186,11 +186,11 @@ impl Watch {
 
 impl Watch {
     /// Adds rows and judges each.
-    fn judged(&self, py: Python<'_>, more: &Dataset) -> PyResult<Vec<Findings>> {
+    fn judge_rows(&self, py: Python<'_>, more: &Dataset) -> PyResult<Vec<Findings>> {
         let robot = &self.robot.model.robot;
         let work = || {
             let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
-            let Session { data, watched } = &mut *session;
+            let WatchSession { data, watched } = &mut *session;
             let first = data.len();
             data.extend(more)?;
             let session = match watched {
@@ -199,7 +199,7 @@ impl Watch {
             };
             let judge = |row: usize| {
                 let found = session.add(data, row)?;
-                let line = report::Watched::new(robot, data, &found);
+                let line = report::RowReport::new(robot, data, &found);
                 Ok(Findings::of_json("WatchedRow", line.text(), line.answer(), line.json()?))
             };
             (first..data.len()).map(judge).collect::<poecal_numerics::error::Result<Vec<_>>>()

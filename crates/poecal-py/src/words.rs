@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 use poecal_calibrate::DeviceFrameKnowledge;
-use poecal_cli::words::{self, Words};
+use poecal_cli::words::{self, WordList};
 use poecal_model::measurement::Quantity;
-use poecal_model::simulate::Kind;
-use poecal_numerics::error::nearest;
-use poecal_numerics::text::visible;
+use poecal_model::simulate::SessionKind;
+use poecal_numerics::error::nearest_word;
+use poecal_numerics::text::escape_invisible;
 use pyo3::prelude::*;
 
 use crate::errors::argument;
@@ -15,33 +15,34 @@ use crate::errors::argument;
 const SHOWN: usize = 60;
 
 /// Meaning of `word`, which must be one of these.
-pub(crate) fn chosen<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
+pub(crate) fn choose_word<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
     if let Some((_, meaning)) = words.iter().find(|(known, _)| *known == word) {
         return Ok(*meaning);
     }
     let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
-    let hint = nearest(word, known.iter().copied())
+    let hint = nearest_word(word, known.iter().copied())
         .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     Err(argument(name, format!("found `{word}`, expected one of {}{hint}", known.join(", "))))
 }
 
 /// Meaning of one of the words of an option of the program.
-pub(crate) fn one_of<T: Copy>(name: &str, word: &str, words: Words<T>) -> PyResult<T> {
+pub(crate) fn one_of<T: Copy>(name: &str, word: &str, words: WordList<T>) -> PyResult<T> {
     let words: Vec<(&str, T)> = words.iter().map(|(word, _, meaning)| (*word, *meaning)).collect();
-    chosen(name, word, &words)
+    choose_word(name, word, &words)
 }
 
 pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
     one_of("device_frame", word, words::FRAME)
 }
 
-pub(crate) fn kind(word: &str) -> PyResult<Kind> {
-    let words: Vec<(&str, Kind)> = Kind::all().into_iter().map(|kind| (kind.word(), kind)).collect();
-    chosen("kind", word, &words)
+pub(crate) fn kind(word: &str) -> PyResult<SessionKind> {
+    let words: Vec<(&str, SessionKind)> =
+        SessionKind::all().into_iter().map(|kind| (kind.word(), kind)).collect();
+    choose_word("kind", word, &words)
 }
 
 pub(crate) fn quantity(word: &str) -> PyResult<Quantity> {
-    chosen("quantity", word, &Quantity::ALL.map(|quantity| (quantity.name(), quantity)))
+    choose_word("quantity", word, &Quantity::ALL.map(|quantity| (quantity.name(), quantity)))
 }
 
 /// Millimetres in metres.
@@ -82,9 +83,9 @@ pub(crate) fn direction(numbers: [f64; 3]) -> PyResult<Vector3<f64>> {
 }
 
 /// A text on one line, without its end if it is long.
-pub(crate) fn shortened(text: &str) -> String {
+pub(crate) fn shorten_text(text: &str) -> String {
     let line = text.trim().lines().next().unwrap_or_default();
     let begin: String = line.chars().take(SHOWN).collect();
     let mark = if begin.len() < text.trim().len() { "…" } else { "" };
-    format!("{}{mark}", visible(&begin))
+    format!("{}{mark}", escape_invisible(&begin))
 }

@@ -33,7 +33,7 @@ fn words(limit: &AcceptedLimit) -> String {
         limit.statistic.words(),
         number(limit.found),
         bounds(limit),
-        plain(limit.limit),
+        format_limit(limit.limit),
         counts(limit)
     )
 }
@@ -62,7 +62,7 @@ pub(crate) fn counts(limit: &AcceptedLimit) -> String {
 }
 
 /// A limit as it was typed, without rounding noise.
-pub(crate) fn plain(limit: f64) -> String {
+pub(crate) fn format_limit(limit: f64) -> String {
     let text = format!("{limit:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text.trim_matches(['0', '.']).is_empty() { format!("{limit:e}") } else { text.to_owned() }

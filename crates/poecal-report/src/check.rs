@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::sight::SightCheck;
-use super::table::{kinds_words, line, lines, robot_words, rounded, short};
+use super::table::{format_short, format_triple, kinds_words, line, lines, robot_words};
 use poecal_fit::forensics::Diagnosis;
 use poecal_import::{
     ColumnUnderstanding, DecimalSign, FileUnderstanding, JoinEntry, MeasurementFile, Separator, lost_words,
@@ -15,7 +15,7 @@ use poecal_model::measurement::Set;
 use poecal_model::robot::{Joint, JointKind, Mount, Robot};
 use poecal_numerics::error::first_few;
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_numerics::unit::Unit;
 use poecal_results::calibration_file::{BodyEntry, MassEntry, PoseEntry};
 use poecal_results::model::{Model, ModelSource};
@@ -251,22 +251,28 @@ impl JointCheck {
     }
 
     fn words(&self) -> String {
-        let direction = rounded(self.direction, 1.0, 6);
+        let direction = format_triple(self.direction, 1.0, 6);
         let (place, factor, unit) = match self.point_m {
-            Some(point) => {
-                (format!("about {direction} through {} mm", rounded(point, 1e3, 3)), 1f64.to_degrees(), "deg")
-            }
+            Some(point) => (
+                format!("about {direction} through {} mm", format_triple(point, 1e3, 3)),
+                1f64.to_degrees(),
+                "deg",
+            ),
             None => (format!("along {direction}"), 1e3, "mm"),
         };
         let limits = match self.limits {
             Some([lower, upper]) => {
-                format!("from {} to {} {unit}", short(lower * factor, 3), short(upper * factor, 3))
+                format!(
+                    "from {} to {} {unit}",
+                    format_short(lower * factor, 3),
+                    format_short(upper * factor, 3)
+                )
             }
             None => "no limits".to_owned(),
         };
         let mut words = format!("{}: {} {place}, {limits}", self.name, self.kind);
         if self.reading != self.name || self.multiplier != 1.0 || self.offset != 0.0 {
-            let offset = short(self.offset * factor, 6);
+            let offset = format_short(self.offset * factor, 6);
             let _ = write!(
                 words,
                 "; value = {} * reading of {} + {offset} {unit}",
@@ -281,11 +287,11 @@ impl JointCheck {
 }
 
 fn pose_words(pose: &PoseEntry) -> String {
-    let position = rounded(pose.position_m, 1e3, 3);
+    let position = format_triple(pose.position_m, 1e3, 3);
     if let [0.0, 0.0, 0.0, _] = pose.quaternion_xyzw {
         return format!("{position} mm");
     }
-    let parts = pose.quaternion_xyzw.map(|part| short(part, 6)).join(", ");
+    let parts = pose.quaternion_xyzw.map(|part| format_short(part, 6)).join(", ");
     format!("{position} mm, quaternion x, y, z, w ({parts})")
 }
 
@@ -336,7 +342,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         line(out, "orientation", &format!("{orientation}; {}", file.pose));
     }
     let widest = |lengths: &mut dyn Iterator<Item = usize>| lengths.max().unwrap_or(0).min(WIDEST);
-    let ours = widest(&mut file.columns.iter().map(|column| width(&visible(&column.name)))).max(8);
+    let ours = widest(&mut file.columns.iter().map(|column| width(&escape_invisible(&column.name)))).max(8);
     let theirs = widest(&mut file.columns.iter().map(|column| width(&column_words(column)))).max(13);
     let units = widest(&mut file.columns.iter().map(|column| width(&unit_words(column)))).max(12);
     let mut row = |name: &str, column: &str, unit: &str, range: &str| {
@@ -352,7 +358,12 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     };
     row("column", "read from", "unit", "values");
     for column in &file.columns {
-        row(&visible(&column.name), &column_words(column), &unit_words(column), &range_words(column));
+        row(
+            &escape_invisible(&column.name),
+            &column_words(column),
+            &unit_words(column),
+            &range_words(column),
+        );
     }
     if !file.ignored.is_empty() {
         line(out, "ignored", &first_few(&file.ignored));
@@ -364,7 +375,7 @@ fn width(text: &str) -> usize {
 }
 
 fn column_words(column: &ColumnUnderstanding) -> Cow<'_, str> {
-    visible(column.column.as_deref().unwrap_or("(constant)"))
+    escape_invisible(column.column.as_deref().unwrap_or("(constant)"))
 }
 
 fn unit_words(column: &ColumnUnderstanding) -> String {
@@ -388,6 +399,6 @@ fn range_words(column: &ColumnUnderstanding) -> String {
         Some(Unit::Radian) => (1f64.to_degrees(), " deg"),
         Some(Unit::One | Unit::Second) | None => (1.0, ""),
     };
-    let (min, max) = (short(min * factor, 3), short(max * factor, 3));
+    let (min, max) = (format_short(min * factor, 3), format_short(max * factor, 3));
     if min == max { format!("{min}{unit}") } else { format!("{min} to {max}{unit}") }
 }

@@ -5,20 +5,21 @@ use std::fmt::Write as _;
 
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_plan::fleet::{
-    Capability, FEWEST, Outlier, Series, Spread, Step, Value, outliers, steps, typical,
+    Capability, FEWEST, FigureSeries, FigureSpread, FigureStep, FigureValue, OutlyingRobot, outliers, steps,
+    typical_value,
 };
 use poecal_results::fleet::LedgerRow;
 use poecal_storage::csv_text::cell;
 
 /// A figure of the line with its spread.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub struct LineFigure {
     /// Its name.
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
     /// Its scatter.
-    pub spread: Spread,
+    pub spread: FigureSpread,
     /// Its capability relative to its limits, if there are some.
     pub capability: Option<Capability>,
 }
@@ -43,9 +44,9 @@ impl PriorUse {
         let first = done.iter().position(|row| row.by_prior)?;
         let (own, others): (Vec<&LedgerRow>, Vec<&LedgerRow>) =
             done[first..].iter().partition(|row| row.by_prior);
-        let error = |rows: &[&LedgerRow]| typical(rows.iter().filter_map(|row| row.error_rms));
+        let error = |rows: &[&LedgerRow]| typical_value(rows.iter().filter_map(|row| row.error_rms));
         let share = |rows: &[&LedgerRow]| {
-            typical(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default()
+            typical_value(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default()
         };
         Some(PriorUse {
             robots: own.len(),
@@ -77,7 +78,7 @@ impl PriorUse {
 
 /// A line of robots.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct FleetLine {
     /// The robots, in the order of measurement.
     pub rows: Vec<LedgerRow>,
     /// Number of robots.
@@ -85,15 +86,15 @@ pub struct Line {
     /// Number of robots that passed at their first measurement.
     pub first_passed: usize,
     /// All figures of the line, in the order of measurement.
-    pub series: Vec<Series>,
+    pub series: Vec<FigureSeries>,
     /// True if there are too few robots for spreads.
     pub is_few: bool,
     /// Spreads of all figures.
-    pub figures: Vec<Figure>,
+    pub figures: Vec<LineFigure>,
     /// Robots that deviate from the line.
-    pub outliers: Vec<Outlier>,
+    pub outliers: Vec<OutlyingRobot>,
     /// Steps in time, each true if it is the station's.
-    pub steps: Vec<(Step, bool)>,
+    pub steps: Vec<(FigureStep, bool)>,
     /// Effect of the line's prior, if there is one.
     pub prior: Option<PriorUse>,
 }
@@ -104,7 +105,7 @@ const LISTED: usize = 40;
 const MOST_FIGURES: f64 = 0.5;
 const TOGETHER: usize = 10;
 
-impl Line {
+impl FleetLine {
     /// Figures of the rows of a ledger. `reference` is the serial number of the reference arm, which does not count in the line; limits are by the
     /// names of figures.
     ///
@@ -121,24 +122,24 @@ impl Line {
         let first: Vec<&&LedgerRow> = of_line.iter().filter(|row| seen.insert(&row.serial)).collect();
         let all = series(&of_line);
         let limits = limits_of(&all, limits)?;
-        let figure = |it: &Series| {
+        let figure = |it: &FigureSeries| {
             let limits = limits.get(&it.name).copied().unwrap_or_default();
-            Some(Figure {
+            Some(LineFigure {
                 name: it.name.clone(),
                 unit: it.unit,
-                spread: Series { is_size: false, ..it.clone() }.spread().filter(|_| it.is_enough())?,
+                spread: FigureSeries { is_size: false, ..it.clone() }.spread().filter(|_| it.is_enough())?,
                 capability: Capability::from_series(it, limits[0], limits[1]),
             })
         };
         let of_reference = steps(&series(&of_reference));
         let found = steps(&all);
-        let is_station = |step: &Step| {
+        let is_station = |step: &FigureStep| {
             let near = found.iter().filter(|it| it.from.abs_diff(step.from) <= TOGETHER).count();
             near as f64 > MOST_FIGURES * all.len() as f64
                 || of_reference.iter().any(|it| it.series == step.series)
         };
-        let figures: Vec<Figure> = all.iter().filter_map(figure).collect();
-        Ok(Line {
+        let figures: Vec<LineFigure> = all.iter().filter_map(figure).collect();
+        Ok(FleetLine {
             first: first.len(),
             first_passed: first.iter().filter(|row| row.is_passed()).count(),
             prior: PriorUse::from_rows(&of_line),
@@ -162,7 +163,7 @@ impl Line {
             let _ = write!(out, ",{},{}", cell(&name), cell(&format!("sigma_{name}")));
         }
         out.push_str(",reason\n");
-        let by_robot: Vec<BTreeMap<&str, &Value>> = all
+        let by_robot: Vec<BTreeMap<&str, &FigureValue>> = all
             .iter()
             .map(|it| it.values.iter().map(|value| (value.serial.as_str(), value)).collect())
             .collect();
@@ -240,7 +241,7 @@ impl Line {
 
 /// Limits by the names of the figures; a unit in brackets must be that of the figure.
 fn limits_of(
-    all: &[Series],
+    all: &[FigureSeries],
     limits: &BTreeMap<String, [Option<f64>; 2]>,
 ) -> Result<BTreeMap<String, [Option<f64>; 2]>> {
     let plain = |(key, own): (&String, &[Option<f64>; 2])| {
@@ -267,7 +268,7 @@ fn limits_of(
 }
 
 /// A step in words.
-pub(crate) fn step_words(step: &Step) -> String {
+pub(crate) fn step_words(step: &FigureStep) -> String {
     let by = match step.unit {
         Some(unit) => format!("{:+.4} {unit}", step.size),
         None => format!("a factor of {:.2}", step.size),
@@ -281,21 +282,25 @@ pub(crate) fn key(row: &LedgerRow) -> String {
 }
 
 /// All figures of some robots.
-pub(crate) fn series(rows: &[&LedgerRow]) -> Vec<Series> {
-    let mut found: BTreeMap<(usize, String), Series> = BTreeMap::new();
-    let mut add =
-        |order: usize, name: String, joint: Option<&str>, unit: &'static str, is_size: bool, value: Value| {
-            let empty = || Series {
-                name: name.clone(),
-                joint: joint.map(str::to_owned),
-                unit,
-                is_size,
-                values: Vec::new(),
-            };
-            found.entry((order, name.clone())).or_insert_with(empty).values.push(value);
+pub(crate) fn series(rows: &[&LedgerRow]) -> Vec<FigureSeries> {
+    let mut found: BTreeMap<(usize, String), FigureSeries> = BTreeMap::new();
+    let mut add = |order: usize,
+                   name: String,
+                   joint: Option<&str>,
+                   unit: &'static str,
+                   is_size: bool,
+                   value: FigureValue| {
+        let empty = || FigureSeries {
+            name: name.clone(),
+            joint: joint.map(str::to_owned),
+            unit,
+            is_size,
+            values: Vec::new(),
         };
+        found.entry((order, name.clone())).or_insert_with(empty).values.push(value);
+    };
     for row in rows.iter().filter(|row| row.verdict.is_some()) {
-        let one = |value: f64, sigma: Option<f64>| Value {
+        let one = |value: f64, sigma: Option<f64>| FigureValue {
             serial: key(row),
             value,
             sigma: sigma.unwrap_or_default(),

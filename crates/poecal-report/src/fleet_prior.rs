@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::fleet::series;
 use poecal_calibrate::TermGroup;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_plan::fleet::{FEWEST, Series};
+use poecal_plan::fleet::{FEWEST, FigureSeries};
 use poecal_results::fleet::{CorrectionRow, LedgerRow};
 
 /// Smallest tolerance that is written: degrees and millimetres.
@@ -70,8 +70,8 @@ fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-fn mean_and_spread(term: &Series) -> Option<String> {
-    let plain = Series { is_size: false, ..term.clone() };
+fn mean_and_spread(term: &FigureSeries) -> Option<String> {
+    let plain = FigureSeries { is_size: false, ..term.clone() };
     let spread = plain.spread().filter(|_| term.is_enough())?;
     Some(format!("# {:24} {:8.4} ± {:.4} {}\n", term.name, spread.center, spread.own, term.unit))
 }

@@ -1,7 +1,7 @@
 //! The table of a hand-eye calibration.
 
 use super::table::lines;
-use poecal_fit::hand_eye::{FoundLens, HandEye, Level, Placed};
+use poecal_fit::hand_eye::{FoundLens, FrameEstimate, HandEye, HandEyeLevel};
 use poecal_model::camera::PictureNumber;
 use poecal_results::frame_texts::NamedFrame;
 use poecal_results::hand_eye::{ArmByJoints, HandEyeResult};
@@ -15,10 +15,10 @@ pub fn hand_eye_answer(result: &HandEyeResult<'_>) -> String {
 }
 
 /// A level with the bound of the result, unless nothing holds.
-pub(crate) fn with_bound(level: Level, what: &str, bound_m: f64) -> String {
+pub(crate) fn with_bound(level: HandEyeLevel, what: &str, bound_m: f64) -> String {
     match level {
-        Level::DoNotUse => level.words().to_owned(),
-        Level::Good | Level::WithinBounds => {
+        HandEyeLevel::DoNotUse => level.words().to_owned(),
+        HandEyeLevel::Good | HandEyeLevel::WithinBounds => {
             let bound_mm = 1e3 * bound_m;
             format!("{}: {what} within {bound_mm:.*} mm (95 %)", level.words(), decimals(bound_mm))
         }
@@ -32,7 +32,7 @@ pub(crate) fn decimals(uncertainty: f64) -> usize {
 }
 
 /// Pose of a frame in its parent, with its bounds.
-fn in_parent(frame: &NamedFrame, placed: &Placed) -> String {
+fn in_parent(frame: &NamedFrame, placed: &FrameEstimate) -> String {
     let t = 1e3 * frame.pose.translation;
     let (bound_mm, bound_deg) = (1e3 * placed.bound95_m, placed.bound95_rad.to_degrees());
     format!(
@@ -119,7 +119,7 @@ fn arm_words(arm: &ArmByJoints) -> String {
     }
 }
 
-fn place(frame: &NamedFrame, placed: &Placed) -> String {
+fn place(frame: &NamedFrame, placed: &FrameEstimate) -> String {
     let t = 1e3 * frame.pose.translation;
     let [qx, qy, qz, qw] = frame.pose.quaternion_xyzw();
     format!(

@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::plan::{PlanErrors, robot_error_words};
 use super::summary::{determined_words, unknowns_words};
 use super::table::{kinds_words, line, noise_words, number, robot_words};
-use poecal_fit::analysis::{Cause, Foresight, JointCoverage, MeasuredPictures, PlannedSession};
-use poecal_model::measurement::{Measured, Quantity};
+use poecal_fit::analysis::{Cause, ExpectedUncertainty, JointCoverage, MeasuredPictures, PlannedSession};
+use poecal_model::measurement::{MeasuredQuantities, Quantity};
 use poecal_model::robot::JointKind;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_plan::plan::ListExpectation;
 use poecal_results::calibration_file::IdentifiabilityEntry;
 use poecal_results::model::Model;
@@ -26,11 +26,11 @@ pub struct Identify {
     kind: &'static str,
     frame: &'static str,
     configurations: usize,
-    noise: Measured<f64>,
+    noise: MeasuredQuantities<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pictures: Option<PicturesEntry>,
+    pictures: Option<IdentifiedPicturesEntry>,
     identifiability: IdentifiabilityEntry,
-    expected_error: ExpectedEntry,
+    expected_error: PredictedErrorsEntry,
     /// Errors of a fit including the robot's own scatter; null for kinds whose configurations cannot be chosen freely.
     expected: Option<PlanErrors>,
     robot_error_is_a_guess: bool,
@@ -42,7 +42,7 @@ pub struct Identify {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct ExpectedEntry {
+struct PredictedErrorsEntry {
     configurations: usize,
     told: usize,
     /// Mean expected error of positions; null without a prediction.
@@ -52,7 +52,7 @@ struct ExpectedEntry {
 
 /// The pictures, and the noise of their corners.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct PicturesEntry {
+struct IdentifiedPicturesEntry {
     count: usize,
     corners: usize,
     sigma_px: f64,
@@ -60,11 +60,11 @@ struct PicturesEntry {
     common_turn_deg: f64,
 }
 
-impl PicturesEntry {
+impl IdentifiedPicturesEntry {
     fn from_pictures(found: &MeasuredPictures) -> Self {
         let MeasuredPictures { count, corners, sigma_px, shared: [shift_m, turn_rad] } = *found;
         let (common_shift_mm, common_turn_deg) = (1e3 * shift_m, turn_rad.to_degrees());
-        PicturesEntry { count, corners, sigma_px, common_shift_mm, common_turn_deg }
+        IdentifiedPicturesEntry { count, corners, sigma_px, common_shift_mm, common_turn_deg }
     }
 }
 
@@ -75,11 +75,11 @@ impl Identify {
         model: &Model,
         files: &[String],
         session: &PlannedSession,
-        (found, expected): (&Foresight, Option<ListExpectation>),
+        (found, expected): (&ExpectedUncertainty, Option<ListExpectation>),
     ) -> Self {
-        let sigma = |quantity: Quantity| quantity.unit().shown(session.noise[quantity]);
+        let sigma = |quantity: Quantity| quantity.unit().in_shown_unit(session.noise[quantity]);
         let is_stated = |quantity: Quantity| found.pictures.is_none() && session.kind.has(quantity);
-        let sigma = Measured::from_fn(|quantity| is_stated(quantity).then(|| sigma(quantity)));
+        let sigma = MeasuredQuantities::from_fn(|quantity| is_stated(quantity).then(|| sigma(quantity)));
         Identify {
             model: model.path.display().to_string(),
             files: files.to_vec(),
@@ -87,9 +87,9 @@ impl Identify {
             frame: if session.device_free { "unknown" } else { "base" },
             configurations: found.count,
             noise: sigma,
-            pictures: found.pictures.as_ref().map(PicturesEntry::from_pictures),
+            pictures: found.pictures.as_ref().map(IdentifiedPicturesEntry::from_pictures),
             identifiability: IdentifiabilityEntry::from_identifiability(&found.identifiability),
-            expected_error: ExpectedEntry {
+            expected_error: PredictedErrorsEntry {
                 configurations: found.expected.configurations,
                 told: found.expected.determined,
                 position_mean_mm: found.expected.mean_m.map(|mean| mean * 1e3),
@@ -258,5 +258,5 @@ fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
         _ => "none".to_owned(),
     };
     let share = joint.share(kind).map_or_else(|| "-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
-    format!("  {:<19}{sampled:>23}{limits:>26}{share:>8}", visible(&joint.joint))
+    format!("  {:<19}{sampled:>23}{limits:>26}{share:>8}", escape_invisible(&joint.joint))
 }

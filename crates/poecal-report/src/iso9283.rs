@@ -44,7 +44,7 @@ pub fn iso9283(test: &TestResult) -> String {
             number(found),
             number(from),
             number(to),
-            super::acceptance::plain(limit.limit),
+            super::acceptance::format_limit(limit.limit),
             unit = limit.unit
         );
         line(&mut out, "acceptance", &words);
@@ -152,13 +152,13 @@ impl TestPlan {
 }
 
 /// A number with its sign.
-fn signed(value: f64) -> String {
+fn format_signed(value: f64) -> String {
     if value < 0.0 { format!("-{}", number(-value)) } else { number(value) }
 }
 
 fn bounds_words(bounds: &BoundsEntry, unit: &str) -> String {
     let BoundsEntry { found, from, to } = *bounds;
-    format!("{} {unit} ({} to {})", signed(found), signed(from), signed(to))
+    format!("{} {unit} ({} to {})", format_signed(found), format_signed(from), format_signed(to))
 }
 
 /// The largest of a figure, without noise and corrected.

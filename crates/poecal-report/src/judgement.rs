@@ -3,7 +3,8 @@
 use super::acceptance;
 use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, pictures_words, row};
 use poecal_calibrate::{
-    Gain, Improvement, Judgement, Level, ModelAccuracy, PartCoverage, Refitted, RepeatScatter, Statistic,
+    Gain, Improvement, Judgement, Level, ModelAccuracy, QuantityCoverage, RefittedPart, RepeatScatter,
+    Statistic,
 };
 use poecal_model::measurement::Quantity;
 
@@ -21,7 +22,7 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         let words = format!("the device stands {shift} mm and {turn} deg from where the calibration has it");
         line(&mut out, "", &words);
     }
-    if let Some(found) = judgement.delivered().errors.pixels {
+    if let Some(found) = judgement.delivered_model().errors.pixels {
         line(&mut out, "corners", &pictures_words(&found));
     }
     out.push('\n');
@@ -107,16 +108,16 @@ pub(crate) fn before_factor(gain: Gain) -> &'static str {
 
 /// The verdict with its one figure, and the reasons against a better one.
 fn verdict(judgement: &Judgement) -> Vec<String> {
-    let (_, reasons) = judgement.confirmed();
-    std::iter::once(judged(judgement)).chain(reasons).collect()
+    let (_, reasons) = judgement.confirmed_level();
+    std::iter::once(describe_judgement(judgement)).chain(reasons).collect()
 }
 
 /// The level that the measurements confirm, with the error of the delivered model beside the expected one, in a sentence.
 #[must_use]
-pub fn judged(judgement: &Judgement) -> String {
-    let (level, _) = judgement.confirmed();
-    let delivered = judgement.delivered();
-    let figure = delivered.errors.leading().map(|(quantity, found)| {
+pub fn describe_judgement(judgement: &Judgement) -> String {
+    let (level, _) = judgement.confirmed_level();
+    let delivered = judgement.delivered_model();
+    let figure = delivered.errors.leading_value().map(|(quantity, found)| {
         let part = delivered.promised.and_then(|it| it.parts.get(quantity));
         let expected = part.map(|it| format!(", expected {}", number(it.expected_rms)));
         let (rms, unit, model) = (number(found.rms), quantity.unit().symbol(), delivered.model.word());
@@ -125,7 +126,7 @@ pub fn judged(judgement: &Judgement) -> String {
     format!("{}{}", confirmed_words(level), figure.unwrap_or_default())
 }
 
-fn coverage(out: &mut String, label: &str, quantity: Quantity, check: &PartCoverage, found: f64) {
+fn coverage(out: &mut String, label: &str, quantity: Quantity, check: &QuantityCoverage, found: f64) {
     let (what, unit) = (quantity.name(), quantity.unit().symbol());
     let words = format!(
         "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with measurement noise",
@@ -144,7 +145,7 @@ fn range_words(judgement: &Judgement) -> String {
         return "all rows lie inside it".to_owned();
     }
     let share = 100.0 * some.promised.parts.lead().inside_bound95;
-    let leading = some.calibrated.leading().map_or(Quantity::Position, |(quantity, _)| quantity);
+    let leading = some.calibrated.leading_value().map_or(Quantity::Position, |(quantity, _)| quantity);
     let (rms, what, unit) = (number(some.calibrated.lead().rms), leading.name(), leading.unit().symbol());
     format!(
         "{} of {} rows {} inside it: {what} error {rms} {unit} (RMS), {share:.1} % inside the bounds",
@@ -164,8 +165,8 @@ fn refitted_words(judgement: &Judgement) -> String {
 /// The refitted parts; empty if there are none.
 pub(crate) fn refitted_parts(judgement: &Judgement) -> String {
     let words = judgement.refitted.iter().map(|part| match part {
-        Refitted::DeviceFrame => "device frame",
-        Refitted::Tool => "tool",
+        RefittedPart::DeviceFrame => "device frame",
+        RefittedPart::Tool => "tool",
     });
     words.collect::<Vec<_>>().join(" and ")
 }

@@ -14,10 +14,10 @@
 
 mod acceptance;
 mod check;
-mod compared;
+mod comparison;
+mod fitted_cameras;
 mod fleet;
 mod fleet_prior;
-mod found;
 mod hand_eye;
 mod identify;
 mod iso9283;
@@ -28,6 +28,7 @@ mod page;
 mod plan;
 #[doc(hidden)]
 pub mod plot;
+mod row_report;
 mod shade;
 mod sight;
 mod summary;
@@ -36,26 +37,25 @@ pub mod table;
 mod tcp;
 mod track;
 mod track_entries;
-mod watched;
 
 pub use check::{Check, SetCounts};
-pub use compared::Comparison;
-pub use fleet::{Figure, Line, PriorUse};
+pub use comparison::ComparisonReport;
+pub use fleet::{FleetLine, LineFigure, PriorUse};
 pub use fleet_prior::fleet_prior;
 pub use hand_eye::{hand_eye, hand_eye_answer};
 pub use identify::Identify;
 pub use iso9283::{TestPlan, iso9283, iso9283_answer};
-pub use judgement::{judged, judgement};
+pub use judgement::{describe_judgement, judgement};
 pub use offsets::Offsets;
 pub use page::{
-    Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page,
+    CertificateExtras, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page,
     validation_page, visit_page,
 };
-pub use plan::Plan;
-pub use summary::{Detail, Short, short, summary};
+pub use plan::PlanReport;
+pub use row_report::RowReport;
+pub use summary::{Detail, ShortTable, short_summary, summary};
 pub use tcp::{tool_tip, tool_tip_answer};
-pub use track::{Track, WitnessPlan, recalibrated};
-pub use watched::Watched;
+pub use track::{TrackReport, WitnessPlan, describe_recalibrated};
 
 use serde::Serialize;
 

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::table::{line, number, robot_words};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_model::offsets::{End, TipError};
+use poecal_model::offsets::{EndConstraint, TipError};
 use poecal_model::robot::JointKind;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::PoseEntry;
 use poecal_results::model::Model;
 use poecal_results::offsets::ModelOffsets;
@@ -20,12 +20,12 @@ pub struct Offsets {
     actual: String,
     base: EndEntry,
     tip: EndEntry,
-    joints: Vec<JointEntry>,
+    joints: Vec<JointOffsetEntry>,
     /// Pose of the tip at zero joint values; null if the tip is free.
     home: Option<HomeEntry>,
     /// Names of the joints whose offsets are not determined.
     undetermined: Vec<String>,
-    predictions: Predictions,
+    predictions: PredictionsEntry,
     #[serde(skip)]
     robot_words: String,
 }
@@ -38,7 +38,7 @@ struct EndEntry {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct JointEntry {
+struct JointOffsetEntry {
     joint: String,
     kind: &'static str,
     /// Offset of a turning joint; null for a sliding joint.
@@ -58,16 +58,16 @@ struct HomeEntry {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Predictions {
+struct PredictionsEntry {
     configurations: usize,
     /// Range of the joints over which they are determined.
     range: &'static str,
-    without_offsets: Errors,
-    with_offsets: Errors,
+    without_offsets: OffsetErrors,
+    with_offsets: OffsetErrors,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Errors {
+struct OffsetErrors {
     position_rms_mm: f64,
     position_max_mm: f64,
     rotation_rms_deg: f64,
@@ -80,9 +80,9 @@ impl Offsets {
     pub fn new(nominal: &Model, actual: &Model, found: &ModelOffsets) -> Self {
         let ModelOffsets { explanation, reasons, is_sampled } = found;
         let joints = nominal.robot.joints.iter().enumerate();
-        let joints: Vec<JointEntry> = joints
+        let joints: Vec<JointOffsetEntry> = joints
             .zip(explanation.offsets.iter().zip(&explanation.joints))
-            .map(|((index, joint), (&offset, left))| JointEntry {
+            .map(|((index, joint), (&offset, left))| JointOffsetEntry {
                 joint: joint.name.clone(),
                 kind: joint.kind.word(),
                 offset_deg: (joint.kind == JointKind::Revolute).then(|| offset.to_degrees()),
@@ -108,11 +108,11 @@ impl Offsets {
                 .map(|joint| joint.joint.clone())
                 .collect(),
             joints,
-            predictions: Predictions {
+            predictions: PredictionsEntry {
                 configurations: explanation.options.configurations,
                 range: if *is_sampled { "sampled" } else { "limits" },
-                without_offsets: Errors::new(&explanation.without_offsets),
-                with_offsets: Errors::new(&explanation.with_offsets),
+                without_offsets: OffsetErrors::new(&explanation.without_offsets),
+                with_offsets: OffsetErrors::new(&explanation.with_offsets),
             },
             robot_words: robot_words(&nominal.robot),
         }
@@ -121,7 +121,7 @@ impl Offsets {
     /// The offsets, and their effect on the tip's error, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
-        let joints: Vec<String> = self.joints.iter().map(JointEntry::words).collect();
+        let joints: Vec<String> = self.joints.iter().map(JointOffsetEntry::words).collect();
         let [before, after] = [&self.predictions.without_offsets, &self.predictions.with_offsets];
         format!(
             "{}: the tip's error changes from {} to {} mm (RMS)",
@@ -147,7 +147,7 @@ impl Offsets {
             let _ = writeln!(out, "{}", joint.row());
         }
         if let Some(home) = self.home {
-            let (turn, shift) = (fixed(home.rotation_deg), fixed(home.position_mm));
+            let (turn, shift) = (format_fixed(home.rotation_deg), format_fixed(home.position_mm));
             let _ = writeln!(out, "  {:<37}{turn:>14} deg{shift:>11} mm", "tip at zero");
         }
         out.push('\n');
@@ -164,48 +164,51 @@ impl Offsets {
 }
 
 impl EndEntry {
-    fn new(end: End, reason: &str, motion: &Pose) -> Self {
+    fn new(end: EndConstraint, reason: &str, motion: &Pose) -> Self {
         EndEntry { frame: end.word(), reason: reason.to_owned(), motion: motion.into() }
     }
 
     fn words(&self) -> String {
-        if self.frame == End::Kept.word() {
+        if self.frame == EndConstraint::Kept.word() {
             return format!("{}: {}", self.frame, self.reason);
         }
         let motion = Pose::from_position_quaternion(self.motion.position_m, self.motion.quaternion_xyzw);
         let (shift_mm, turn_rad) = (motion.translation.norm() * 1e3, rotation::log(&motion.rotation).norm());
-        let (shift, turn) = (fixed(shift_mm), fixed(turn_rad.to_degrees()));
+        let (shift, turn) = (format_fixed(shift_mm), format_fixed(turn_rad.to_degrees()));
         format!("{}, shifted by {shift} mm and turned by {turn} deg: {}", self.frame, self.reason)
     }
 }
 
-impl JointEntry {
+impl JointOffsetEntry {
     /// The offset, and its unit.
     fn offset(&self) -> (String, &'static str) {
         match (self.offset_deg, self.offset_mm) {
-            (Some(angle), _) => (fixed(angle), "deg"),
-            (None, length) => (fixed(length.unwrap_or(0.0)), "mm"),
+            (Some(angle), _) => (format_fixed(angle), "deg"),
+            (None, length) => (format_fixed(length.unwrap_or(0.0)), "mm"),
         }
     }
 
     fn words(&self) -> String {
         let (offset, unit) = self.offset();
         let doubt = if self.determined { "" } else { " (not determined)" };
-        format!("{} {offset} {unit}{doubt}", visible(&self.joint))
+        format!("{} {offset} {unit}{doubt}", escape_invisible(&self.joint))
     }
 
     fn row(&self) -> String {
         let (offset, unit) = self.offset();
         let mark = if self.determined { "" } else { "*" };
-        let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", fixed(shift)));
-        let tilt = fixed(self.tilt_deg);
-        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", visible(&self.joint))
+        let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", format_fixed(shift)));
+        let tilt = format_fixed(self.tilt_deg);
+        format!(
+            "  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}",
+            escape_invisible(&self.joint)
+        )
     }
 }
 
-impl Errors {
+impl OffsetErrors {
     fn new(error: &TipError) -> Self {
-        Errors {
+        OffsetErrors {
             position_rms_mm: error.rms_m * 1e3,
             position_max_mm: error.max_m * 1e3,
             rotation_rms_deg: error.rms_rad.to_degrees(),
@@ -214,7 +217,7 @@ impl Errors {
     }
 }
 
-impl Predictions {
+impl PredictionsEntry {
     fn words(&self) -> String {
         let (before, after) = (&self.without_offsets, &self.with_offsets);
         format!(
@@ -235,6 +238,6 @@ impl Predictions {
 }
 
 /// Four decimals, without a sign at zero.
-fn fixed(value: f64) -> String {
+fn format_fixed(value: f64) -> String {
     format!("{:.4}", (value * 1e4).round() / 1e4 + 0.0)
 }

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 
 use super::table::{INDENT, line, number_or_dash};
 use poecal_model::measurement::Quantity;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::{CalibrationFile, OutlierSet};
 
 /// Rows that are named.
 const WORST: usize = 5;
 
 /// Number of suspected rows, the worst of them, and the loss of the fit; empty without suspected rows and loss.
-pub(crate) fn suspected(out: &mut String, file: &CalibrationFile) {
+pub(crate) fn describe_suspects(out: &mut String, file: &CalibrationFile) {
     let robust = &file.robust;
     let fit = match robust.loss {
         Some(loss) => format!("fitted by the {} loss", loss.word()),
@@ -42,7 +42,7 @@ pub(crate) fn suspected(out: &mut String, file: &CalibrationFile) {
         let held_out = if outlier.set == OutlierSet::HeldOut { " (held out)" } else { "" };
         let off_by = |quantity: &Quantity| number_or_dash(outlier.residual.get(*quantity));
         cells(out, "", &measured.iter().map(off_by).collect::<Vec<_>>());
-        let (weight, place) = (outlier.weight, visible(&outlier.file));
+        let (weight, place) = (outlier.weight, escape_invisible(&outlier.file));
         let _ = writeln!(out, "{weight:>9.3}  {place}:{}{held_out}", outlier.row);
     }
     out.push('\n');

@@ -6,13 +6,13 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{line, number, robot_words, row};
-use poecal_plan::plan::{Conditions, CurvePoint, ExpectedErrors, Plan as Found, PlanOptions, RowPart};
+use poecal_plan::plan::{Conditions, CurvePoint, ExpectedErrors, Plan as Found, PlanOptions, RowPurpose};
 use poecal_results::model::Model;
 use poecal_results::plan_program::SPEED_RAD_S;
 
 /// A plan, for a person to look over or a machine to read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Plan {
+pub struct PlanReport {
     model: String,
     measure: &'static str,
     criterion: &'static str,
@@ -35,7 +35,7 @@ pub struct Plan {
     curve: Vec<CurveEntry>,
     /// Number of configurations from which on ten more gain less than 5 %.
     enough: Option<usize>,
-    rows: Vec<RowEntry>,
+    rows: Vec<PlanRowEntry>,
     /// Conditions that are checked.
     checked: Vec<&'static str>,
     /// Numbers of tried configurations that each condition refused.
@@ -74,7 +74,7 @@ struct CurveEntry {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct RowEntry {
+struct PlanRowEntry {
     set: &'static str,
     returns: bool,
     readings: Vec<f64>,
@@ -116,23 +116,24 @@ pub(crate) fn robot_error_words(it: &PlanErrors, is_a_guess: bool) -> String {
     format!("{} mm that no geometry of the axes describes{assumed}", number(it.robot_error_mm))
 }
 
-impl Plan {
+impl PlanReport {
     /// A plan for a model, with the duration of the robot's stop at each row, seconds.
     #[must_use]
     pub fn new(model: &Model, options: &PlanOptions, found: &Found, stop_s: f64) -> Self {
-        let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
+        let count =
+            |part: RowPurpose| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
         let curve = |point: &CurvePoint| CurveEntry {
             configurations: point.count,
             expected: PlanErrors::new(&point.expected),
         };
-        let kept = options.fitted().len() / model.robot.reading_names().len().max(1);
-        Plan {
+        let kept = options.fitted_readings().len() / model.robot.reading_names().len().max(1);
+        PlanReport {
             model: model.path.display().to_string(),
             measure: options.fit.session.kind.word(),
             criterion: options.criterion.word(),
-            configurations: count(RowPart::Fit) - if options.replaced.is_empty() { 0 } else { kept },
+            configurations: count(RowPurpose::Fit) - if options.replaced.is_empty() { 0 } else { kept },
             kept,
-            judge: count(RowPart::Judge),
+            judge: count(RowPurpose::Judge),
             returns: found.rows.iter().filter(|row| row.returns).count(),
             duration_s: found.travel_rad / SPEED_RAD_S + stop_s * found.rows.len() as f64,
             stop_s,
@@ -148,14 +149,18 @@ impl Plan {
             rows: found
                 .rows
                 .iter()
-                .map(|row| RowEntry {
+                .map(|row| PlanRowEntry {
                     set: row.part.set(),
                     returns: row.returns,
                     readings: row.readings.clone(),
                 })
                 .collect(),
-            checked: checked(&options.conditions),
-            refused: found.refusals.each().map(|(obstacle, count)| (obstacle.words(), count)).collect(),
+            checked: checked_conditions(&options.conditions),
+            refused: found
+                .refusals
+                .iter_counts()
+                .map(|(obstacle, count)| (obstacle.words(), count))
+                .collect(),
             tried: found.refusals.tried,
             left_out: found.left_out.iter().map(|(a, b)| [a.clone(), b.clone()]).collect(),
             without_limits: found.without_limits.clone(),
@@ -178,13 +183,13 @@ impl Plan {
     }
 
     /// Configurations to fit, kept and new.
-    pub(crate) fn planned(&self) -> usize {
+    pub(crate) fn planned_count(&self) -> usize {
         self.configurations + self.kept
     }
 
     /// Comparison of the planned number of configurations with the worthwhile one, in words.
     pub(crate) fn advice(&self) -> String {
-        let planned = self.planned();
+        let planned = self.planned_count();
         match self.enough {
             Some(enough) if enough > planned => format!(
                 "{planned} configurations are planned, {enough} would be worth it: --count {enough} ({LITTLE_GAIN})"
@@ -204,7 +209,7 @@ impl Plan {
     pub fn answer(&self) -> String {
         format!(
             "{} configurations to fit are expected to give {} mm calibrated and {} mm corrected (RMS over the workspace); as many random ones {} and {} mm.",
-            self.planned(),
+            self.planned_count(),
             number(self.expected.calibrated_mm),
             number(self.expected.corrected_mm),
             number(self.random.calibrated_mm),
@@ -238,7 +243,7 @@ impl Plan {
                 ),
             ),
         ];
-        let numbers = self.planned() * self.numbers;
+        let numbers = self.planned_count() * self.numbers;
         if numbers < self.unknowns {
             let words =
                 format!("{numbers} numbers for {} unknowns: the prior decides the rest", self.unknowns);
@@ -282,7 +287,7 @@ impl Plan {
         row(&mut out, "configurations", widths, &CURVE_HEAD[1..]);
         for point in &self.curve {
             let it = &point.expected;
-            let mark = if point.configurations == self.planned() { "  planned" } else { "" };
+            let mark = if point.configurations == self.planned_count() { "  planned" } else { "" };
             let cells = [
                 it.calibrated_mm,
                 it.calibrated_undetermined_mm,
@@ -298,7 +303,7 @@ impl Plan {
 }
 
 /// The conditions that are checked.
-fn checked(conditions: &Conditions) -> Vec<&'static str> {
+fn checked_conditions(conditions: &Conditions) -> Vec<&'static str> {
     let own = [
         (true, "limits of the joints"),
         (!conditions.keep_out.is_empty(), "keep-out boxes"),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use poecal_fit::analysis::{Way, ways};
+use poecal_fit::analysis::{KinematicPath, ways};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::first_few;
@@ -10,7 +10,7 @@ use poecal_numerics::error::first_few;
 /// The kinematic chains from instruments to targets, and joints on none of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SightCheck {
-    ways: Vec<Way>,
+    ways: Vec<KinematicPath>,
     /// Joints on no such chain: measurements cannot determine their axes.
     unseen: Vec<String>,
 }
@@ -39,7 +39,7 @@ impl SightCheck {
     }
 }
 
-fn words(way: &Way) -> String {
+fn words(way: &KinematicPath) -> String {
     let instrument = way.instrument.as_deref().unwrap_or("the device beside the robot");
     let target = way.target.as_deref().unwrap_or("the tip");
     let joints = if way.joints.is_empty() { "no joint".to_owned() } else { way.joints.join(", ") };

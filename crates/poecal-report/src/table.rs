@@ -3,16 +3,16 @@
 use std::fmt::{Display, Write as _};
 
 use poecal_calibrate::{ModelAccuracy, PixelAccuracy, SetAccuracy, Statistic};
-use poecal_model::measurement::{Measured, Quantity};
+use poecal_model::measurement::{MeasuredQuantities, Quantity};
 use poecal_model::robot::{JointKind, Robot};
-use poecal_numerics::error::shown;
-use poecal_numerics::text::visible;
+use poecal_numerics::error::shorten_name;
+use poecal_numerics::text::escape_invisible;
 
 /// A model: its word, and its accuracy in a set.
-type Model = (&'static str, fn(&SetAccuracy) -> Option<&ModelAccuracy>);
+type ModelColumn = (&'static str, fn(&SetAccuracy) -> Option<&ModelAccuracy>);
 
 /// The models; not every calibration has the last.
-const MODELS: [Model; 4] = [
+const MODELS: [ModelColumn; 4] = [
     ("nominal", |set| Some(&set.nominal)),
     ("registered", |set| Some(&set.registered)),
     ("calibrated", |set| Some(&set.calibrated)),
@@ -20,7 +20,7 @@ const MODELS: [Model; 4] = [
 ];
 
 /// The models of some rows.
-pub(crate) fn models(set: &SetAccuracy) -> Vec<Model> {
+pub(crate) fn models(set: &SetAccuracy) -> Vec<ModelColumn> {
     MODELS.into_iter().filter(|(_, model)| model(set).is_some()).collect()
 }
 
@@ -41,7 +41,7 @@ pub(crate) const WIDTHS: [usize; 2] = [26, 13];
 /// Errors of each quantity by the three models, training and held out separately.
 pub(crate) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
     let mut out = String::new();
-    for (k, quantity) in measured(training, held_out).enumerate() {
+    for (k, quantity) in measured_quantities(training, held_out).enumerate() {
         if k > 0 {
             out.push('\n');
         }
@@ -51,7 +51,7 @@ pub(crate) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccura
 }
 
 /// Quantities that rows of these sets measured.
-pub(crate) fn measured<'a>(
+pub(crate) fn measured_quantities<'a>(
     training: &'a SetAccuracy,
     held_out: Option<&'a SetAccuracy>,
 ) -> impl Iterator<Item = Quantity> + 'a {
@@ -109,12 +109,12 @@ pub fn number(value: f64) -> String {
 }
 
 /// `(x, y, z)` in another unit.
-pub(crate) fn rounded(values: [f64; 3], factor: f64, digits: usize) -> String {
-    format!("({})", values.map(|value| short(value * factor, digits)).join(", "))
+pub(crate) fn format_triple(values: [f64; 3], factor: f64, digits: usize) -> String {
+    format!("({})", values.map(|value| format_short(value * factor, digits)).join(", "))
 }
 
 /// Up to `digits` decimals, without zeros at the end; more decimals for a value that would otherwise become zero.
-pub(crate) fn short(value: f64, digits: usize) -> String {
+pub(crate) fn format_short(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     match text {
@@ -125,9 +125,9 @@ pub(crate) fn short(value: f64, digits: usize) -> String {
 }
 
 /// A number of the leading quantity with its unit, or a dash if nothing was measured.
-pub(crate) fn leading_words(numbers: &Measured<f64>) -> String {
+pub(crate) fn leading_words(numbers: &MeasuredQuantities<f64>) -> String {
     let words = |(quantity, it): (Quantity, f64)| format!("{} {}", number(it), quantity.unit().symbol());
-    numbers.leading().map_or_else(|| "-".to_owned(), words)
+    numbers.leading_value().map_or_else(|| "-".to_owned(), words)
 }
 
 /// Words after a number of a quantity that is no part of a pose, since its unit does not identify it.
@@ -136,7 +136,7 @@ pub(crate) fn further_words(quantity: Quantity) -> String {
 }
 
 /// The noise of each measured quantity, with its unit.
-pub(crate) fn noise_words(sigma: &Measured<f64>) -> String {
+pub(crate) fn noise_words(sigma: &MeasuredQuantities<f64>) -> String {
     let words = sigma.iter().map(|(quantity, it)| {
         format!("{} {}{}", number(it), quantity.unit().symbol(), further_words(quantity))
     });
@@ -150,7 +150,12 @@ pub(crate) fn number_or_dash(value: Option<f64>) -> String {
 
 pub(crate) fn robot_words(robot: &Robot) -> String {
     let kinds = joints_words(robot.joints.iter().map(|joint| joint.kind));
-    format!("{}: {kinds}, from {} to {}", shown(&robot.name), shown(&robot.base_name), shown(&robot.tip_name))
+    format!(
+        "{}: {kinds}, from {} to {}",
+        shorten_name(&robot.name),
+        shorten_name(&robot.base_name),
+        shorten_name(&robot.tip_name)
+    )
 }
 
 /// Number of joints that turn, and of joints that slide.
@@ -178,7 +183,7 @@ pub const WIDTH: usize = 80;
 
 /// A labelled line, broken at 80 columns with the text aligned.
 pub fn line(out: &mut String, label: &str, text: &str) {
-    let text = broken(&visible(text), INDENT, INDENT, WIDTH);
+    let text = break_text(&escape_invisible(text), INDENT, INDENT, WIDTH);
     // Writing to a String cannot fail.
     let _ = writeln!(out, "{label:<INDENT$}{text}");
 }
@@ -192,7 +197,7 @@ pub fn lines<T: AsRef<str>>(out: &mut String, label: &str, texts: impl IntoItera
 
 /// A text with line breaks in place of blanks if it would be wider than `width`: after `before` characters, and with further lines indented.
 #[must_use]
-pub fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
+pub fn break_text(text: &str, before: usize, indent: usize, width: usize) -> String {
     let (mut out, mut used) = (String::new(), before);
     for (k, word) in text.split(' ').enumerate() {
         let length = word.chars().count();

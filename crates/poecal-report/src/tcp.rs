@@ -2,18 +2,18 @@
 
 use super::hand_eye::{decimals, with_bound};
 use super::table::lines;
-use poecal_fit::hand_eye::{Tip, Tool};
+use poecal_fit::hand_eye::{TouchedTip, TouchedTool};
 use poecal_results::tcp::ToolResult;
 
 /// Position of the tip, its bounds, and the judgement, in a sentence.
 #[must_use]
-pub fn tool_tip_answer(found: &Tool) -> String {
+pub fn tool_tip_answer(found: &TouchedTool) -> String {
     let tips: Vec<String> = found.tips.iter().map(tip_words).collect();
     format!("{}: {}", found.level.words(), tips.join("; "))
 }
 
 /// The position of a tip.
-fn tip_words(tip: &Tip) -> String {
+fn tip_words(tip: &TouchedTip) -> String {
     let t = 1e3 * tip.placed.pose.translation;
     let name = if tip.name.is_empty() { String::new() } else { format!("{}: ", tip.name) };
     let bound_mm = 1e3 * tip.placed.bound95_m;

@@ -3,17 +3,19 @@
 use serde::Serialize;
 
 use super::table::line;
-use super::track_entries::{ExplanationEntry, InvisibleEntry, SightEntry, Use, shown, sight_table, to_do};
+use super::track_entries::{
+    ExplanationEntry, InvisibleEntry, SightEntry, UsageLevel, in_page_unit, sight_table, to_do,
+};
 use poecal_model::robot::JointKind;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::{CalibrationFile, RepairedPart};
 use poecal_results::record::Record;
-use poecal_results::track::{JudgedBy, Repaired, State, Tracked, Witnesses};
+use poecal_results::track::{JudgingBasis, RecalibratedJoint, RobotCondition, VisitResult, Witnesses};
 use poecal_results::validation::{TRACK, ValidationInputs};
 
 /// A visit with its references.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Track {
+pub struct TrackReport {
     /// Name and version of this schema.
     pub schema: &'static str,
     /// Version that judged.
@@ -25,8 +27,8 @@ pub struct Track {
     /// Statements about the visit, not about the calibration's session.
     #[serde(skip_serializing_if = "Record::is_empty")]
     pub record: Record,
-    state: State,
-    judged_by: JudgedBy,
+    state: RobotCondition,
+    judged_by: JudgingBasis,
     /// Stated position of the measuring device and mounting of the tool: words of `--device` and `--tool`.
     device: &'static str,
     tool: &'static str,
@@ -82,11 +84,12 @@ impl WitnessPlan {
     pub fn answer(&self) -> String {
         let seen = self.joints.iter().filter_map(|it| {
             let smallest = it.smallest?;
-            Some(format!("{} {smallest:.3} {}", visible(&it.joint), it.unit))
+            Some(format!("{} {smallest:.3} {}", escape_invisible(&it.joint), it.unit))
         });
         let seen: Vec<String> = seen.collect();
         let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
-        let unseen: Vec<String> = self.invisible.iter().map(|it| visible(&it.joint).into_owned()).collect();
+        let unseen: Vec<String> =
+            self.invisible.iter().map(|it| escape_invisible(&it.joint).into_owned()).collect();
         let unseen =
             if unseen.is_empty() { String::new() } else { format!("; not visible: {}", unseen.join(", ")) };
         format!("{} configurations; smallest visible shifts (95 %): {seen}{unseen}", self.configurations)
@@ -111,7 +114,7 @@ impl WitnessPlan {
 
 /// Recalibrated parts, in words.
 #[must_use]
-pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
+pub fn describe_recalibrated(found: &RecalibratedJoint, before: &CalibrationFile) -> String {
     let mut out = String::new();
     let (size, sigma) = found.repair.size();
     let joint = before.joints.iter().find(|it| it.name == found.repair.joint);
@@ -119,22 +122,22 @@ pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
     let unit = if slides { "mm" } else { "deg" };
     let what = match found.repair.part {
         RepairedPart::Zero => {
-            format!("zero by {:+.4} ± {:.4} {unit}", shown(size, slides), shown(sigma, slides))
+            format!("zero by {:+.4} ± {:.4} {unit}", in_page_unit(size, slides), in_page_unit(sigma, slides))
         }
         RepairedPart::Axis => {
             format!("axis turned by {:.4} ± {:.4} deg", size.to_degrees(), sigma.to_degrees())
         }
     };
     line(&mut out, "robot", &before.robot.name);
-    line(&mut out, "anew", &format!("{}: {what}; all else as before", visible(&found.repair.joint)));
+    line(&mut out, "anew", &format!("{}: {what}; all else as before", escape_invisible(&found.repair.joint)));
     out
 }
 
-impl Track {
+impl TrackReport {
     /// Entries of a visit's result.
     #[must_use]
-    pub fn new(found: &Tracked, robot: &str, inputs: ValidationInputs) -> Self {
-        Track {
+    pub fn new(found: &VisitResult, robot: &str, inputs: ValidationInputs) -> Self {
+        TrackReport {
             schema: TRACK,
             poecal_version: env!("CARGO_PKG_VERSION"),
             robot: robot.to_owned(),
@@ -162,7 +165,7 @@ impl Track {
     /// The same result with the statements about the visit.
     #[must_use]
     pub fn with_record(self, record: Record) -> Self {
-        Track { record, ..self }
+        TrackReport { record, ..self }
     }
 
     /// The change, in a sentence.
@@ -170,14 +173,14 @@ impl Track {
     pub fn answer(&self) -> String {
         let Some(found) = &self.explanation else {
             return match self.state {
-                State::Unchanged => format!("unchanged within {:.3} mm", self.change_mm),
-                State::Changed => {
+                RobotCondition::Unchanged => format!("unchanged within {:.3} mm", self.change_mm),
+                RobotCondition::Changed => {
                     "changed, and no single cause explains it: another robot or tool, or calibrate anew"
                         .to_owned()
                 }
             };
         };
-        let others: Vec<String> = self.alternatives.iter().map(ExplanationEntry::named).collect();
+        let others: Vec<String> = self.alternatives.iter().map(ExplanationEntry::subject_name).collect();
         let others = match others.as_slice() {
             [] => String::new(),
             [one] => format!("; {one} explains it nearly as well"),
@@ -189,7 +192,7 @@ impl Track {
     /// The state with the change.
     pub(crate) fn state_words(&self) -> String {
         match (&self.explanation, self.state) {
-            (Some(_), State::Changed) => format!("changed: {}", self.answer()),
+            (Some(_), RobotCondition::Changed) => format!("changed: {}", self.answer()),
             (..) => self.answer(),
         }
     }
@@ -197,11 +200,11 @@ impl Track {
     /// Reference of the judgement.
     pub(crate) fn judged_words(&self) -> String {
         match self.judged_by {
-            JudgedBy::Repeats => format!(
+            JudgingBasis::Repeats => format!(
                 "{} of {} rows that repeat earlier ones, measured against measured",
                 self.repeated, self.rows
             ),
-            JudgedBy::Model => format!("the model, at {} rows", self.rows),
+            JudgingBasis::Model => format!("the model, at {} rows", self.rows),
         }
     }
 
@@ -214,9 +217,11 @@ impl Track {
     /// The level of the calibration after the visit, by its level before.
     pub(crate) fn level_words(&self, before: &str) -> String {
         match (self.state, self.explanation.as_ref().map(|it| to_do(it).0)) {
-            (State::Unchanged, _) | (State::Changed, Some(Use::Whole)) => before.to_owned(),
-            (State::Changed, Some(Use::Axes)) => format!("axes: {before}; tool: do not use"),
-            (State::Changed, Some(Use::None) | None) => "do not use".to_owned(),
+            (RobotCondition::Unchanged, _) | (RobotCondition::Changed, Some(UsageLevel::Whole)) => {
+                before.to_owned()
+            }
+            (RobotCondition::Changed, Some(UsageLevel::Axes)) => format!("axes: {before}; tool: do not use"),
+            (RobotCondition::Changed, Some(UsageLevel::None) | None) => "do not use".to_owned(),
         }
     }
 
@@ -224,8 +229,8 @@ impl Track {
     pub(crate) fn to_do(&self) -> String {
         let Some(found) = &self.explanation else {
             return match self.state {
-                State::Unchanged => "Nothing: the calibration stays in use.".to_owned(),
-                State::Changed => "Do not use the calibration: calibrate again.".to_owned(),
+                RobotCondition::Unchanged => "Nothing: the calibration stays in use.".to_owned(),
+                RobotCondition::Changed => "Do not use the calibration: calibrate again.".to_owned(),
             };
         };
         let (_, words) = to_do(found);

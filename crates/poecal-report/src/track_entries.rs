@@ -5,14 +5,14 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use poecal_fit::analysis::JointCoverage;
-use poecal_numerics::text::visible;
-use poecal_results::track::{Explanation, JointSight, Kind, Size, Unseen};
+use poecal_numerics::text::escape_invisible;
+use poecal_results::track::{ChangeExplanation, ExplanationKind, JointSight, Size, Undetectable};
 
 /// An explanation of the changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ExplanationEntry {
     #[serde(skip)]
-    pub(crate) of: Kind,
+    pub(crate) of: ExplanationKind,
     pub(crate) kind: &'static str,
     /// Its joint; for two zeros both, null if it concerns no joint.
     pub(crate) joint: Option<String>,
@@ -50,12 +50,12 @@ pub(crate) struct ZeroEntry {
 }
 
 impl ZeroEntry {
-    fn all(found: &Explanation) -> Vec<Self> {
+    fn all(found: &ChangeExplanation) -> Vec<Self> {
         let of = |(joint, size): (&String, &Size)| ZeroEntry {
             joint: joint.clone(),
             unit: if size.turns { "deg" } else { "mm" },
-            size: shown(size.value, !size.turns),
-            sigma: shown(size.sigma, !size.turns),
+            size: in_page_unit(size.value, !size.turns),
+            sigma: in_page_unit(size.sigma, !size.turns),
         };
         found.names.iter().zip(&found.sizes).map(of).collect()
     }
@@ -88,32 +88,32 @@ pub(crate) struct SightEntry {
 }
 
 /// Word of a kind.
-fn kind(of: Kind) -> &'static str {
+fn kind(of: ExplanationKind) -> &'static str {
     match of {
-        Kind::Device => "device",
-        Kind::Tool => "tool",
-        Kind::Target => "target",
-        Kind::Lengths => "lengths",
-        Kind::Zero => "zero",
-        Kind::Axis => "axis",
-        Kind::Give => "give",
-        Kind::TwoZeros => "two_zeros",
-        Kind::Zeros => "zeros",
+        ExplanationKind::Device => "device",
+        ExplanationKind::Tool => "tool",
+        ExplanationKind::Target => "target",
+        ExplanationKind::Lengths => "lengths",
+        ExplanationKind::Zero => "zero",
+        ExplanationKind::Axis => "axis",
+        ExplanationKind::Give => "give",
+        ExplanationKind::TwoZeros => "two_zeros",
+        ExplanationKind::Zeros => "zeros",
     }
 }
 
 /// Words for the reason why no shift of a joint is visible.
-fn because(unseen: Unseen) -> (&'static str, &'static str) {
+fn describe_reason(unseen: Undetectable) -> (&'static str, &'static str) {
     match unseen {
-        Unseen::Device => (
+        Undetectable::Device => (
             "device",
             "the device was set up anew, so that its new place hides the shift: state --device known if it is on fixed nests",
         ),
-        Unseen::Tool => ("tool", "the tool was mounted anew, so that its new place hides the shift"),
-        Unseen::DeviceAndTool => {
+        Undetectable::Tool => ("tool", "the tool was mounted anew, so that its new place hides the shift"),
+        Undetectable::DeviceAndTool => {
             ("device and tool", "device and tool are new, so that their places hide the shift")
         }
-        Unseen::NoMotion => (
+        Undetectable::NoMotion => (
             "motion",
             "a shift moves no target of these rows by enough: measure a target farther from its axis, and turn the joints before it",
         ),
@@ -121,13 +121,13 @@ fn because(unseen: Unseen) -> (&'static str, &'static str) {
 }
 
 /// A value in degrees; for a slide in millimetres.
-pub(crate) fn shown(value: f64, slides: bool) -> f64 {
+pub(crate) fn in_page_unit(value: f64, slides: bool) -> f64 {
     if slides { 1e3 * value } else { value.to_degrees() }
 }
 
 /// The part of a range that rows sample, in the units of a page.
-pub(crate) fn sampled(found: &JointCoverage, slides: bool) -> [f64; 2] {
-    [found.sampled_min, found.sampled_max].map(|it| shown(it, slides))
+pub(crate) fn sampled_range(found: &JointCoverage, slides: bool) -> [f64; 2] {
+    [found.sampled_min, found.sampled_max].map(|it| in_page_unit(it, slides))
 }
 
 impl SightEntry {
@@ -136,30 +136,33 @@ impl SightEntry {
         SightEntry {
             joint: it.joint.clone(),
             unit: if it.slides { "mm" } else { "deg" },
-            smallest: Some(shown(it.smallest, it.slides)).filter(|_| it.unseen.is_none()),
-            sigma: Some(shown(it.sigma, it.slides)).filter(|it| it.is_finite()),
-            sampled: range.map(|range| sampled(range, it.slides)),
-            shift: it.shift.map(|shift| shown(shift.value, it.slides)),
-            sigma_shift: it.shift.map(|shift| shown(shift.sigma, it.slides)),
+            smallest: Some(in_page_unit(it.smallest, it.slides)).filter(|_| it.unseen.is_none()),
+            sigma: Some(in_page_unit(it.sigma, it.slides)).filter(|it| it.is_finite()),
+            sampled: range.map(|range| sampled_range(range, it.slides)),
+            shift: it.shift.map(|shift| in_page_unit(shift.value, it.slides)),
+            sigma_shift: it.shift.map(|shift| in_page_unit(shift.sigma, it.slides)),
         }
     }
 }
 
 impl InvisibleEntry {
     pub(crate) fn from_sight(it: &JointSight) -> Option<Self> {
-        let (word, words) = because(it.unseen?);
+        let (word, words) = describe_reason(it.unseen?);
         Some(InvisibleEntry { joint: it.joint.clone(), because: word, words: words.to_owned() })
     }
 }
 
 impl ExplanationEntry {
-    pub(crate) fn from_explanation(found: &Explanation) -> Self {
-        let is_of_joint = matches!(found.kind, Kind::Zero | Kind::Axis | Kind::Give | Kind::TwoZeros);
+    pub(crate) fn from_explanation(found: &ChangeExplanation) -> Self {
+        let is_of_joint = matches!(
+            found.kind,
+            ExplanationKind::Zero | ExplanationKind::Axis | ExplanationKind::Give | ExplanationKind::TwoZeros
+        );
         let name = |at: usize| found.names.get(at).filter(|it| !it.is_empty()).cloned();
-        let is_pair = found.kind == Kind::TwoZeros;
-        let are_several = found.kind == Kind::Zeros;
+        let is_pair = found.kind == ExplanationKind::TwoZeros;
+        let are_several = found.kind == ExplanationKind::Zeros;
         let (angle, length) = (found.size(true), found.size(false));
-        let share = found.kind == Kind::Lengths;
+        let share = found.kind == ExplanationKind::Lengths;
         let own = |at: usize| found.sizes.get(at).filter(|it| it.turns).map(|it| (it.value, it.sigma));
         let angle = if is_pair { own(0) } else { angle.filter(|_| !are_several) };
         let other = if is_pair { own(1) } else { None };
@@ -169,7 +172,7 @@ impl ExplanationEntry {
             kind: kind(found.kind),
             joint: name(0).filter(|_| is_of_joint),
             other_joint: name(1).filter(|_| is_pair),
-            name: name(0).filter(|_| matches!(found.kind, Kind::Target | Kind::Device)),
+            name: name(0).filter(|_| matches!(found.kind, ExplanationKind::Target | ExplanationKind::Device)),
             size_deg: angle.map(|it| it.0.to_degrees()),
             sigma_deg: angle.map(|it| it.1.to_degrees()),
             other_size_deg: other.map(|it| it.0.to_degrees()),
@@ -184,7 +187,7 @@ impl ExplanationEntry {
     }
 
     /// Its subject, in a word.
-    pub(crate) fn named(&self) -> String {
+    pub(crate) fn subject_name(&self) -> String {
         match (&self.joint, &self.other_joint, &self.name) {
             (Some(joint), Some(other), _) => format!("{joint} and {other}"),
             (Some(joint), None, _) if self.kind == "zero" => joint.clone(),
@@ -196,53 +199,53 @@ impl ExplanationEntry {
 }
 
 /// Further use of programs and the calibration, and advice, by the explanation of the changes.
-pub(crate) fn to_do(found: &ExplanationEntry) -> (Use, String) {
-    let joint = found.joint.as_deref().map(visible).unwrap_or_default();
-    let named = found.named();
+pub(crate) fn to_do(found: &ExplanationEntry) -> (UsageLevel, String) {
+    let joint = found.joint.as_deref().map(escape_invisible).unwrap_or_default();
+    let named = found.subject_name();
     match found.of {
-        Kind::Device => (
-            Use::Whole,
+        ExplanationKind::Device => (
+            UsageLevel::Whole,
             "Nothing on the robot: the measuring device is not where it was. Find out whether it or the robot's base was moved".to_owned(),
         ),
-        Kind::Tool => (
-            Use::Axes,
+        ExplanationKind::Tool => (
+            UsageLevel::Axes,
             "Look at the tool and its mounting. Measure its tip again (`poecal tcp`), or state `--tool refit` if it was taken off".to_owned(),
         ),
-        Kind::Target => {
-            (Use::Axes, format!("Fasten the {named}, or do without it: measure the visit again with the other targets"))
+        ExplanationKind::Target => {
+            (UsageLevel::Axes, format!("Fasten the {named}, or do without it: measure the visit again with the other targets"))
         }
-        Kind::Lengths => (
-            Use::None,
+        ExplanationKind::Lengths => (
+            UsageLevel::None,
             "Measure again at the temperature of the calibration, after the same warming up; if it stays, calibrate again".to_owned(),
         ),
-        Kind::Zero => (
-            Use::None,
+        ExplanationKind::Zero => (
+            UsageLevel::None,
             format!(
                 "Look at motor, encoder, belt and brake of {joint}, and set its mastering again. If nothing is found, calibrate its zero: `poecal track --recalibrate {joint} --out FILE`"
             ),
         ),
-        Kind::Axis => (
-            Use::None,
+        ExplanationKind::Axis => (
+            UsageLevel::None,
             format!(
                 "Look for damage at {joint}. Calibrate its axis (`poecal track --recalibrate {joint}.axis --out FILE`), or the whole robot again"
             ),
         ),
-        Kind::Give => {
-            (Use::None, format!("Look at bearing, gear and balancer of {joint}, and at the payload; then calibrate again"))
+        ExplanationKind::Give => {
+            (UsageLevel::None, format!("Look at bearing, gear and balancer of {joint}, and at the payload; then calibrate again"))
         }
-        Kind::TwoZeros => {
-            (Use::None, format!("Look at the mastering of {named}; then calibrate again"))
+        ExplanationKind::TwoZeros => {
+            (UsageLevel::None, format!("Look at the mastering of {named}; then calibrate again"))
         }
-        Kind::Zeros => {
-            let joints: Vec<_> = found.zeros.iter().map(|it| visible(&it.joint)).collect();
-            (Use::None, format!("Look at the mastering of {}; then calibrate again", joints.join(", ")))
+        ExplanationKind::Zeros => {
+            let joints: Vec<_> = found.zeros.iter().map(|it| escape_invisible(&it.joint)).collect();
+            (UsageLevel::None, format!("Look at the mastering of {}; then calibrate again", joints.join(", ")))
         }
     }
 }
 
 /// Extent to which a calibration is used after a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Use {
+pub(crate) enum UsageLevel {
     /// As before.
     Whole,
     /// The axes as before, but not the tool.
@@ -252,7 +255,7 @@ pub(crate) enum Use {
 }
 
 /// An explanation with its size.
-fn words(found: &Explanation) -> String {
+fn words(found: &ChangeExplanation) -> String {
     let first = found.names.first().map(String::as_str).unwrap_or_default();
     let name = |what: &str| if first.is_empty() { what.to_owned() } else { format!("{what} {first}") };
     let angle =
@@ -274,18 +277,20 @@ fn words(found: &Explanation) -> String {
     };
     let second = found.names.get(1).map(String::as_str).unwrap_or_default();
     match found.kind {
-        Kind::Device => format!("{}: moved by {}", name("device"), far()),
-        Kind::Tool => format!("tool: moved on the flange by {}", far()),
-        Kind::Target => format!("{}: moved on the tool by {}", name("target"), far()),
-        Kind::Lengths => {
+        ExplanationKind::Device => format!("{}: moved by {}", name("device"), far()),
+        ExplanationKind::Tool => format!("tool: moved on the flange by {}", far()),
+        ExplanationKind::Target => format!("{}: moved on the tool by {}", name("target"), far()),
+        ExplanationKind::Lengths => {
             let (value, sigma) = found.size(false).unwrap_or_default();
             format!("all lengths: {:+.0} ± {:.0} parts in a million, as by warmth", 1e6 * value, 1e6 * sigma)
         }
-        Kind::Zero => format!("{first}: zero by {}", each(0)),
-        Kind::Axis => format!("{first}: axis moved by {}", far()),
-        Kind::Give => format!("{first}: gives otherwise by {} at full weight", far()),
-        Kind::TwoZeros => format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1)),
-        Kind::Zeros => {
+        ExplanationKind::Zero => format!("{first}: zero by {}", each(0)),
+        ExplanationKind::Axis => format!("{first}: axis moved by {}", far()),
+        ExplanationKind::Give => format!("{first}: gives otherwise by {} at full weight", far()),
+        ExplanationKind::TwoZeros => {
+            format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1))
+        }
+        ExplanationKind::Zeros => {
             let all =
                 found.names.iter().enumerate().map(|(at, name)| format!("{name}: zero by {}", each(at)));
             all.collect::<Vec<_>>().join(", ")
@@ -300,10 +305,10 @@ pub(crate) fn sight_table(joints: &[SightEntry], invisible: &[InvisibleEntry]) -
     for joint in joints {
         let smallest =
             joint.smallest.map_or_else(|| "not visible".to_owned(), |it| format!("{it:.3} {}", joint.unit));
-        let _ = writeln!(out, "  {:16} {smallest:>30}", visible(&joint.joint));
+        let _ = writeln!(out, "  {:16} {smallest:>30}", escape_invisible(&joint.joint));
     }
     for it in invisible {
-        let _ = writeln!(out, "  {}: {}", visible(&it.joint), it.words);
+        let _ = writeln!(out, "  {}: {}", escape_invisible(&it.joint), it.words);
     }
     out
 }

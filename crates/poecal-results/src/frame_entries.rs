@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use poecal_fit::hand_eye::{Finding, Level};
+use poecal_fit::hand_eye::{Finding, HandEyeLevel};
 
 /// Inputs of a result.
 #[derive(Serialize)]
@@ -22,7 +22,7 @@ pub(crate) struct VerdictEntry<'a> {
 }
 
 impl<'a> VerdictEntry<'a> {
-    pub(crate) fn new(level: Level, reasons: &'a [String]) -> Self {
+    pub(crate) fn new(level: HandEyeLevel, reasons: &'a [String]) -> Self {
         VerdictEntry { level: level.word(), reasons }
     }
 }

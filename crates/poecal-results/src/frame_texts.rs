@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use poecal_arm::lie::{Pose, rotation};
-use poecal_storage::numbers::shortest;
+use poecal_storage::numbers::format_shortest;
 
 /// A frame by the names of its parent and its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ fn number(value: f64) -> String {
     }
 }
 
-fn listed(values: &[f64], separator: &str) -> String {
+fn join_values(values: &[f64], separator: &str) -> String {
     values.iter().map(|it| number(*it)).collect::<Vec<_>>().join(separator)
 }
 
@@ -79,8 +79,8 @@ impl NamedFrame {
         format!(
             "<joint name=\"{child}_joint\" type=\"fixed\">\n  <parent link=\"{}\"/>\n  <child link=\"{child}\"/>\n  <origin xyz=\"{}\" rpy=\"{}\"/>\n</joint>",
             self.parent,
-            listed(self.pose.translation.as_slice(), " "),
-            listed(&self.rpy(), " "),
+            join_values(self.pose.translation.as_slice(), " "),
+            join_values(&self.rpy(), " "),
             child = self.child
         )
     }
@@ -122,7 +122,7 @@ impl NamedFrame {
         let matrix = |name: &str, rows: usize, columns: usize, values: &[f64]| {
             format!(
                 "{name}: !!opencv-matrix\n   rows: {rows}\n   cols: {columns}\n   dt: d\n   data: [ {} ]\n",
-                listed(values, ", ")
+                join_values(values, ", ")
             )
         };
         let [rvec, tvec] = [self.rvec(), self.pose.translation.into()];
@@ -139,9 +139,9 @@ impl NamedFrame {
         let name = format!("{} from {}, position only", self.parent, self.child);
         [
             format!("# {name}: x y z (m)"),
-            listed(self.pose.translation.as_slice(), " "),
+            join_values(self.pose.translation.as_slice(), " "),
             format!("# {name}: X Y Z (mm)"),
-            listed(&millimetres, " "),
+            join_values(&millimetres, " "),
             format!("# {name}: ROS 2, with the axes of {}", self.parent),
             self.static_transform_publisher(),
             format!("# {name}: URDF, with the axes of {}", self.parent),
@@ -155,7 +155,7 @@ impl NamedFrame {
     #[must_use]
     pub fn short_forms(&self) -> String {
         // All digits, for programs that read it.
-        let digits = |row: &[f64; 4]| row.map(|it| shortest(it + 0.0)).join(", ");
+        let digits = |row: &[f64; 4]| row.map(|it| format_shortest(it + 0.0)).join(", ");
         let rows: Vec<String> = self.matrix().iter().map(|row| format!("  [{}]", digits(row))).collect();
         let millimetres: Vec<f64> = self.pose.translation.iter().map(|it| 1e3 * it).collect();
         let [a, b, c] = self.rpy().map(f64::to_degrees);
@@ -165,13 +165,21 @@ impl NamedFrame {
             format!("# {name}: 4 x 4 matrix, metres"),
             format!("[\n{}\n]", rows.join(",\n")),
             format!("# {name}: x y z (m), quaternion x y z w"),
-            format!("{}  {}", listed(self.pose.translation.as_slice(), " "), listed(&[qx, qy, qz, qw], " ")),
+            format!(
+                "{}  {}",
+                join_values(self.pose.translation.as_slice(), " "),
+                join_values(&[qx, qy, qz, qw], " ")
+            ),
             format!("# {name}: OpenCV's tvec (m) and rvec (rad)"),
-            format!("{}  {}", listed(self.pose.translation.as_slice(), " "), listed(&self.rvec(), " ")),
+            format!(
+                "{}  {}",
+                join_values(self.pose.translation.as_slice(), " "),
+                join_values(&self.rvec(), " ")
+            ),
             format!("# {name}: X Y Z (mm), KUKA's A B C (deg)"),
-            format!("{}  {}", listed(&millimetres, " "), listed(&[c, b, a], " ")),
+            format!("{}  {}", join_values(&millimetres, " "), join_values(&[c, b, a], " ")),
             format!("# {name}: X Y Z (mm), FANUC's W P R (deg)"),
-            format!("{}  {}", listed(&millimetres, " "), listed(&[a, b, c], " ")),
+            format!("{}  {}", join_values(&millimetres, " "), join_values(&[a, b, c], " ")),
             format!("# {name}: ROS 2"),
             self.static_transform_publisher(),
             format!("# {name}: URDF"),

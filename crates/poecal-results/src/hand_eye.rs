@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::NamedFrame;
 use super::lens_entries::{LensEntry, lens_text};
-use poecal_calibrate::ArmToo;
-use poecal_fit::hand_eye::{CameraPlace, Directions, HandEye, Placed};
+use poecal_calibrate::ArmFitComparison;
+use poecal_fit::hand_eye::{CameraMounting, Directions, FrameEstimate, HandEye};
 use poecal_import as measurements;
 use poecal_import::PosePairs;
 use poecal_model::measurement::{Dataset, Noise};
@@ -86,7 +86,7 @@ pub struct ArmByJoints {
     /// The session as `calibrate` reads it.
     pub session: String,
     /// Errors of held-out poses with the arm held and with the arm fitted, or the reason why the arm was not fitted.
-    pub errors: std::result::Result<ArmToo, String>,
+    pub errors: std::result::Result<ArmFitComparison, String>,
     /// The command that fits the arm with the camera.
     pub command: String,
 }
@@ -99,7 +99,7 @@ impl ArmByJoints {
     pub fn new(
         (robot, data): (&Robot, &Dataset),
         found: &HandEye,
-        errors: Result<Option<ArmToo>>,
+        errors: Result<Option<ArmFitComparison>>,
         command: String,
     ) -> Result<Self> {
         let [across, along, tilt, turn] = found.noise;
@@ -116,23 +116,23 @@ impl ArmByJoints {
 }
 
 #[derive(Serialize)]
-struct File<'a> {
+struct HandEyeFile<'a> {
     schema: &'static str,
     poecal_version: &'static str,
     inputs: InputsEntry<'a>,
     camera: &'static str,
     verdict: VerdictEntry<'a>,
-    camera_frame: FrameEntry,
-    target_frame: FrameEntry,
+    camera_frame: HandEyeFrameEntry,
+    target_frame: HandEyeFrameEntry,
     directions: DirectionsEntry,
     poses: usize,
     fitted: usize,
-    noise: NoiseEntry,
+    noise: HandEyeNoiseEntry,
     residual: ErrorEntry,
     #[serde(skip_serializing_if = "Option::is_none")]
     held_out: Option<ErrorEntry>,
     turns: TurnsEntry,
-    outliers: Vec<OutlierEntry<'a>>,
+    outliers: Vec<HandEyeOutlierEntry<'a>>,
     findings: Vec<FindingEntry<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     arm: Option<ArmEntry<'a>>,
@@ -142,7 +142,7 @@ struct File<'a> {
 
 /// A frame in all forms, with its bounds.
 #[derive(Serialize)]
-pub(crate) struct FrameEntry {
+pub(crate) struct HandEyeFrameEntry {
     parent: String,
     child: String,
     position_m: [f64; 3],
@@ -176,7 +176,7 @@ impl DirectionsEntry {
 }
 
 #[derive(Serialize)]
-struct NoiseEntry {
+struct HandEyeNoiseEntry {
     across_mm: f64,
     along_mm: f64,
     tilt_deg: f64,
@@ -201,7 +201,7 @@ enum ArmEntry<'a> {
 impl ArmEntry<'_> {
     fn new(arm: &ArmByJoints) -> ArmEntry<'_> {
         match &arm.errors {
-            Ok(ArmToo { rows, held, fitted }) => {
+            Ok(ArmFitComparison { rows, held, fitted }) => {
                 let of =
                     |errors: &(f64, f64)| ErrorEntry { rows: *rows, rms_mm: errors.0, rms_deg: errors.1 };
                 ArmEntry::Compared { held: of(held), fitted: of(fitted), command: &arm.command }
@@ -218,16 +218,16 @@ struct TurnsEntry {
 }
 
 #[derive(Serialize)]
-struct OutlierEntry<'a> {
+struct HandEyeOutlierEntry<'a> {
     row: &'a str,
     shift_mm: f64,
     turn_deg: f64,
     flipped: bool,
 }
 
-impl FrameEntry {
-    pub(crate) fn new(frame: &NamedFrame, placed: &Placed) -> Self {
-        FrameEntry {
+impl HandEyeFrameEntry {
+    pub(crate) fn new(frame: &NamedFrame, placed: &FrameEstimate) -> Self {
+        HandEyeFrameEntry {
             parent: frame.parent.clone(),
             child: frame.child.clone(),
             position_m: frame.pose.translation.into(),
@@ -248,15 +248,15 @@ impl FrameEntry {
 impl HandEyeResult<'_> {
     /// The camera's frame and the target's, each with its bounds.
     #[must_use]
-    pub fn frames(&self) -> [(NamedFrame, Placed); 2] {
+    pub fn frames(&self) -> [(NamedFrame, FrameEstimate); 2] {
         let FrameNames { base, flange, camera, target } = self.names;
         let HandEye { on_flange, in_base, .. } = self.found;
-        let frame = |parent: &String, child: &String, placed: &Placed| {
+        let frame = |parent: &String, child: &String, placed: &FrameEstimate| {
             (NamedFrame { parent: parent.clone(), child: child.clone(), pose: placed.pose }, *placed)
         };
         match self.found.camera {
-            CameraPlace::InHand => [frame(flange, camera, on_flange), frame(base, target, in_base)],
-            CameraPlace::Beside => [frame(base, camera, in_base), frame(flange, target, on_flange)],
+            CameraMounting::InHand => [frame(flange, camera, on_flange), frame(base, target, in_base)],
+            CameraMounting::Beside => [frame(base, camera, in_base), frame(flange, target, on_flange)],
         }
     }
 
@@ -273,7 +273,7 @@ impl HandEyeResult<'_> {
         let [camera, target] = self.frames();
         let [across, along, tilt, turn] = found.noise;
         let fitted = found.rows.iter().filter(|it| it.is_fitted).count();
-        let file = File {
+        let file = HandEyeFile {
             schema: SCHEMA,
             poecal_version: env!("CARGO_PKG_VERSION"),
             inputs: InputsEntry {
@@ -283,12 +283,12 @@ impl HandEyeResult<'_> {
             },
             camera: found.camera.word(),
             verdict: VerdictEntry::new(found.level, &found.reasons),
-            camera_frame: FrameEntry::new(&camera.0, &camera.1),
-            target_frame: FrameEntry::new(&target.0, &target.1),
+            camera_frame: HandEyeFrameEntry::new(&camera.0, &camera.1),
+            target_frame: HandEyeFrameEntry::new(&target.0, &target.1),
             directions: DirectionsEntry::new(&found.directions),
             poses: found.rows.len(),
             fitted,
-            noise: NoiseEntry {
+            noise: HandEyeNoiseEntry {
                 across_mm: 1e3 * across,
                 along_mm: 1e3 * along,
                 tilt_deg: tilt.to_degrees(),
@@ -312,7 +312,7 @@ impl HandEyeResult<'_> {
             outliers: found
                 .outliers
                 .iter()
-                .map(|it| OutlierEntry {
+                .map(|it| HandEyeOutlierEntry {
                     row: self.name(it.row),
                     shift_mm: 1e3 * it.shift_m,
                     turn_deg: it.turn_rad.to_degrees(),
@@ -348,7 +348,7 @@ impl HandEyeResult<'_> {
     pub fn texts(&self) -> Vec<(&'static str, String)> {
         let [(camera, _), (target, _)] = self.frames();
         let FrameNames { base, flange, camera: camera_name, target: target_name } = self.names;
-        let is_in_hand = self.found.camera == CameraPlace::InHand;
+        let is_in_hand = self.found.camera == CameraMounting::InHand;
         let what = if is_in_hand { "EYE-IN-HAND" } else { "EYE-TO-HAND" };
         let mut texts = vec![
             ("transforms.txt", camera.short_forms() + "\n" + &target.short_forms()),

@@ -27,7 +27,7 @@ pub mod plan_program;
 pub mod predictions;
 pub mod programs;
 pub mod record;
-pub mod renamed;
+pub mod renamed_words;
 pub mod residuals;
 pub mod settings;
 pub mod shapes;

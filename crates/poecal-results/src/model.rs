@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::calibration_file::CalibrationFile;
 use poecal_arm::lie::Pose;
-use poecal_formats::foreign::Form;
+use poecal_formats::foreign::ForeignForm;
 use poecal_formats::proof::Difference;
 use poecal_formats::robot_toml;
-use poecal_formats::urdf::{self, ChainSelection, Converted, UrdfDocument};
+use poecal_formats::urdf::{self, ChainSelection, ConvertedModel, UrdfDocument};
 use poecal_import::ReadOptions;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Controller, Robot};
@@ -132,7 +132,7 @@ impl Model {
     /// The part of reading that does not depend on the kind of path, compiled once.
     fn read_at(path: &Path, selection: &ChainSelection) -> Result<Self> {
         let text = source_text::read(path, MODEL)?;
-        let beside = Form::from_text(&text, path).and_then(|form| form.sibling(&text, path));
+        let beside = ForeignForm::from_text(&text, path).and_then(|form| form.sibling(&text, path));
         let Some(beside) = beside else { return Model::parse(&text, path, selection) };
         let table = source_text::read(
             &beside,
@@ -155,7 +155,7 @@ impl Model {
         beside: Option<(&str, &Path)>,
         selection: &ChainSelection,
     ) -> Result<Self> {
-        if let Some(form) = Form::from_text(text, path) {
+        if let Some(form) = ForeignForm::from_text(text, path) {
             let document = form.read(text, path, beside, selection)?;
             let robot = document.robot().clone();
             return Ok(Model {
@@ -229,7 +229,7 @@ impl Model {
     #[must_use]
     pub fn terms_left_out(&self) -> Option<String> {
         match &self.source {
-            ModelSource::Calibration(file) => file.corrected().map(|_| {
+            ModelSource::Calibration(file) => file.corrected_file().map(|_| {
                 format!(
                     "{}: its calibrated axes are the nominal model; its joint terms are not taken over",
                     self.path.display()
@@ -243,7 +243,7 @@ impl Model {
     #[must_use]
     pub fn reads(&self, options: ReadOptions) -> ReadOptions {
         let beyond_tip = match &self.source {
-            ModelSource::Urdf(document) => document.beyond().to_vec(),
+            ModelSource::Urdf(document) => document.joints_beyond_tip().to_vec(),
             ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
         };
         ReadOptions { controller: self.controller().cloned(), beyond_tip, ..options }
@@ -263,7 +263,7 @@ impl Model {
     pub(crate) fn urdf_of(&self, robot: &Robot, notes: &mut Vec<String>) -> Result<(String, ChainSelection)> {
         match self.document()? {
             Some(document) => {
-                let patched = document.patched(robot)?;
+                let patched = document.patch(robot)?;
                 notes.extend(patched.notes);
                 Ok((patched.text, patched.selection))
             }
@@ -279,9 +279,9 @@ impl Model {
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if the file holds no valid corrected model.
-    pub fn corrected(self) -> Result<Self> {
+    pub fn corrected_model(self) -> Result<Self> {
         let ModelSource::Calibration(file) = &self.source else { return Ok(self) };
-        let Some(corrected) = file.corrected() else { return Ok(self) };
+        let Some(corrected) = file.corrected_file() else { return Ok(self) };
         let robot = corrected.robot().map_err(|error| error.in_file(&self.path))?;
         Ok(Model { robot, source: ModelSource::Calibration(Box::new(corrected)), ..self })
     }
@@ -329,7 +329,7 @@ fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Resul
 /// # Errors
 /// [`ErrorKind::Export`] if the form cannot hold the model, or the text read back differs by more than 1e-12 m or rad (for robots larger
 /// than 1 m, 1e-12 of the size).
-pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
+pub fn convert(model: &Model, to: ModelFormat) -> Result<ConvertedModel> {
     let robot = &model.robot;
     let mut plain = Cow::Borrowed(robot);
     let (converted, again) = match to {
@@ -338,12 +338,12 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
             plain = urdf::holdable(robot, &mut notes);
             let (text, selection) = model.urdf_of(&plain, &mut notes)?;
             let again = UrdfDocument::parse(&text, &model.path, &selection);
-            (Converted { text, notes }, again.map(|document| document.robot().clone()))
+            (ConvertedModel { text, notes }, again.map(|document| document.robot().clone()))
         }
         ModelFormat::Toml => {
             let text = robot_toml::write(robot);
             let again = robot_toml::parse(&text, &model.path);
-            (Converted { text, notes: toml_notes(model) }, again)
+            (ConvertedModel { text, notes: toml_notes(model) }, again)
         }
     };
     let again = again.map_err(|error| {

@@ -3,7 +3,7 @@
 use super::model::{Model, ModelSource};
 use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_fit::analysis::within_sampled;
-use poecal_model::offsets::{End, Explanation, OffsetOptions, explain};
+use poecal_model::offsets::{EndConstraint, OffsetExplanation, OffsetOptions, explain};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
@@ -13,14 +13,14 @@ use poecal_numerics::error::Result;
 /// use poecal_results::model::{Model, ModelSource};
 /// use poecal_results::offsets::ModelOffsets;
 /// let model = Model { robot: poecal_model::simulate::elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
-/// let found = ModelOffsets::between(&model, &model, [None, None])?;
+/// let found = ModelOffsets::from_robots(&model, &model, [None, None])?;
 /// assert!(found.explanation.offsets.iter().all(|offset| offset.abs() < 1e-12) && !found.is_sampled);
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelOffsets {
     /// The offsets, and the errors that remain.
-    pub explanation: Explanation,
+    pub explanation: OffsetExplanation,
     /// Reason why the base and the tip are held or free.
     pub reasons: [&'static str; 2],
     /// True if the tips are compared over the range that the calibration sampled, and not within the limits.
@@ -33,7 +33,7 @@ impl ModelOffsets {
     ///
     /// # Errors
     /// As [`explain`].
-    pub fn between(nominal: &Model, actual: &Model, ends: [Option<End>; 2]) -> Result<Self> {
+    pub fn from_robots(nominal: &Model, actual: &Model, ends: [Option<EndConstraint>; 2]) -> Result<Self> {
         Self::of_robots(&nominal.robot, &actual.robot, actual, ends)
     }
 
@@ -42,7 +42,7 @@ impl ModelOffsets {
         nominal: &Robot,
         actual: &Robot,
         source: &Model,
-        ends: [Option<End>; 2],
+        ends: [Option<EndConstraint>; 2],
     ) -> Result<Self> {
         let coverage = match &source.source {
             ModelSource::Calibration(file) => file.coverage.as_slice(),
@@ -56,22 +56,22 @@ impl ModelOffsets {
 
     /// Decision whether base and tip are held or free, as requested or by default, each with the reason. By default an end is free if the calibration
     /// does not determine it.
-    fn ends([base, tip]: [Option<End>; 2], actual: &Model) -> [(End, &'static str); 2] {
-        let both = (End::Kept, "both models state it");
+    fn ends([base, tip]: [Option<EndConstraint>; 2], actual: &Model) -> [(EndConstraint, &'static str); 2] {
+        let both = (EndConstraint::Kept, "both models state it");
         let (usual_base, usual_tip) = match &actual.source {
             ModelSource::Calibration(file) => {
                 let base = match file.frame() {
                     DeviceFrameKnowledge::Unknown => (
-                        End::Free,
+                        EndConstraint::Free,
                         "the calibration did not know the device's place, so its base frame is a matter of choice",
                     ),
-                    DeviceFrameKnowledge::Base => (End::Kept, "the calibration was measured in it"),
+                    DeviceFrameKnowledge::Base => (EndConstraint::Kept, "the calibration was measured in it"),
                 };
-                (base, (End::Free, "a tool is taught on the robot as it is"))
+                (base, (EndConstraint::Free, "a tool is taught on the robot as it is"))
             }
             ModelSource::Urdf(_) | ModelSource::Toml => (both, both),
         };
-        let asked = |end: Option<End>, usual| end.map_or(usual, |end| (end, "as asked"));
+        let asked = |end: Option<EndConstraint>, usual| end.map_or(usual, |end| (end, "as asked"));
         [asked(base, usual_base), asked(tip, usual_tip)]
     }
 }

@@ -31,7 +31,8 @@ pub fn plan_program(path: &Path, robot: &Robot, rows: &[PlannedRow]) -> Result<S
         .map(|stem| stem.to_string_lossy().chars().filter(char::is_ascii_alphanumeric).collect())
         .unwrap_or_default();
     let name = if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("plan{name}") };
-    let rows: Vec<Row> = rows.iter().enumerate().map(|(at, row)| Row::new(at + 1, row)).collect();
+    let rows: Vec<ProgramRow> =
+        rows.iter().enumerate().map(|(at, row)| ProgramRow::new(at + 1, row)).collect();
     let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
     match ending.as_deref() {
         Some("script") => Ok(script(&name, &rows)),
@@ -46,14 +47,14 @@ pub fn plan_program(path: &Path, robot: &Robot, rows: &[PlannedRow]) -> Result<S
 }
 
 /// A row of a program.
-struct Row {
+struct ProgramRow {
     number: usize,
     angles_rad: Vec<f64>,
 }
 
-impl Row {
+impl ProgramRow {
     fn new(number: usize, row: &PlannedRow) -> Self {
-        Row { number, angles_rad: row.readings.clone() }
+        ProgramRow { number, angles_rad: row.readings.clone() }
     }
 
     /// Its angles in degrees, 0 for missing ones.
@@ -71,17 +72,17 @@ const ABOVE: [&str; 3] = [
     "Angles are those of the model: see that they are the controller's.",
 ];
 
-fn listed(values: &[f64], digits: usize) -> String {
+fn join_values(values: &[f64], digits: usize) -> String {
     values.iter().map(|value| format!("{value:.digits$}")).collect::<Vec<_>>().join(",")
 }
 
 // Writing to a String cannot fail in any of them.
 
-fn script(name: &str, rows: &[Row]) -> String {
+fn script(name: &str, rows: &[ProgramRow]) -> String {
     let mut out = format!("def {name}():\n");
     ABOVE.iter().for_each(|line| out.push_str(&format!("  # {line}\n")));
     for row in rows {
-        let _ = writeln!(out, "  movej([{}], a=0.5, v={SPEED_RAD_S})", listed(&row.angles_rad, 6));
+        let _ = writeln!(out, "  movej([{}], a=0.5, v={SPEED_RAD_S})", join_values(&row.angles_rad, 6));
         let _ = writeln!(
             out,
             "  popup(\"row {}: measure, then continue\", title=\"poecal\", blocking=True)",
@@ -91,7 +92,7 @@ fn script(name: &str, rows: &[Row]) -> String {
     out + "end\n"
 }
 
-fn rapid(name: &str, rows: &[Row]) -> String {
+fn rapid(name: &str, rows: &[ProgramRow]) -> String {
     let mut out = format!("MODULE {name}\n");
     ABOVE.iter().for_each(|line| out.push_str(&format!("  ! {line}\n")));
     for row in rows {
@@ -99,7 +100,7 @@ fn rapid(name: &str, rows: &[Row]) -> String {
             out,
             "  CONST jointtarget row{}:=[[{}],[9E9,9E9,9E9,9E9,9E9,9E9]];",
             row.number,
-            listed(&row.degrees(), 4)
+            join_values(&row.degrees(), 4)
         );
     }
     let _ = writeln!(out, "  PROC {name}_rows()");
@@ -110,7 +111,7 @@ fn rapid(name: &str, rows: &[Row]) -> String {
     out + "  ENDPROC\nENDMODULE\n"
 }
 
-fn krl(name: &str, rows: &[Row]) -> String {
+fn krl(name: &str, rows: &[ProgramRow]) -> String {
     let mut out = format!("DEF {name}()\n");
     ABOVE.iter().for_each(|line| out.push_str(&format!("; {line}\n")));
     out.push_str("BAS(#INITMOV,0)\nBAS(#VEL_PTP,10)\n");
@@ -122,7 +123,7 @@ fn krl(name: &str, rows: &[Row]) -> String {
     out + "END\n"
 }
 
-fn ls(name: &str, rows: &[Row]) -> String {
+fn ls(name: &str, rows: &[ProgramRow]) -> String {
     let mut out = format!("/PROG  {}\n/ATTR\n/MN\n", name.to_ascii_uppercase());
     let mut line = 0;
     let mut add = |out: &mut String, text: &str| {
@@ -148,13 +149,13 @@ fn ls(name: &str, rows: &[Row]) -> String {
 mod tests {
     use super::*;
     use poecal_model::simulate::{elbow, scara};
-    use poecal_plan::plan::RowPart;
+    use poecal_plan::plan::RowPurpose;
 
     #[test]
     fn each_language_has_a_motion_and_a_stop_for_each_row() {
         let row = |value: f64| PlannedRow {
             readings: vec![value; 6],
-            part: RowPart::Fit,
+            part: RowPurpose::Fit,
             returns: false,
             candidate: None,
         };

@@ -5,12 +5,12 @@ use std::borrow::Cow;
 use super::calibration_file::{BodyEntry, MeasuredEntry, TargetEntry, only_target};
 use super::model::{Model, ModelSource};
 use poecal_arm::lie::Pose;
-use poecal_fit::analysis::inside;
-use poecal_fit::state::Packed;
+use poecal_fit::analysis::is_within_ranges;
+use poecal_fit::state::PackedValues;
 use poecal_fit::uncertainty::PredictedError;
 use poecal_import::JointsTable;
 use poecal_model::robot::Robot;
-use poecal_numerics::error::{ErrorKind, Result, first_few, nearest};
+use poecal_numerics::error::{ErrorKind, Result, first_few, nearest_word};
 use poecal_storage::csv_text::cell;
 use poecal_storage::numbers::push_number;
 
@@ -43,7 +43,7 @@ pub fn predict(
     target: Option<&str>,
     with_uncertainty: bool,
 ) -> Result<String> {
-    let found = predicted(model, &joints.readings, frame, target, with_uncertainty)?;
+    let found = predict_readings(model, &joints.readings, frame, target, with_uncertainty)?;
     let with_ids = !joints.ids.is_empty();
     let mut out = String::with_capacity((joints.rows + 1) * 200);
     out.push_str(if with_ids { "id," } else { "" });
@@ -78,16 +78,16 @@ pub fn predict(
 /// ```
 /// # mod poecal {
 /// #     pub use poecal_results::model::{Model, ModelSource};
-/// #     pub use poecal_results::predictions::{PredictionFrame, predicted};
+/// #     pub use poecal_results::predictions::{PredictionFrame, predict_readings};
 /// # }
-/// use poecal::{Model, ModelSource, PredictionFrame, predicted};
+/// use poecal::{Model, ModelSource, PredictionFrame, predict_readings};
 /// let model = Model { robot: poecal_model::simulate::scara(), source: ModelSource::Toml, path: "scara.toml".into() };
-/// let found = predicted(&model, &[0.0; 8], PredictionFrame::Base, None, false)?;
+/// let found = predict_readings(&model, &[0.0; 8], PredictionFrame::Base, None, false)?;
 /// assert_eq!((found.poses.len(), found.poses[0]), (2, model.robot.home));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Predicted {
+pub struct PredictedPoses {
     /// Name of the target that is predicted; `None` is the tip.
     pub target: Option<String>,
     /// Pose of the tip or target in the chosen frame, one for each configuration.
@@ -101,13 +101,13 @@ pub struct Predicted {
 ///
 /// # Errors
 /// As [`predict`].
-pub fn predicted(
+pub fn predict_readings(
     model: &Model,
     readings: &[f64],
     frame: PredictionFrame,
     target: Option<&str>,
     with_uncertainty: bool,
-) -> Result<Predicted> {
+) -> Result<PredictedPoses> {
     let target = match target {
         Some(name) if is_tip(model, name) => None,
         Some(name) => Some(name),
@@ -124,7 +124,7 @@ pub fn predicted(
     let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
     let poses = robot.forward_kinematics_of(readings);
     let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
-    Ok(Predicted { target: target.map(str::to_owned), poses, doubts })
+    Ok(PredictedPoses { target: target.map(str::to_owned), poses, doubts })
 }
 
 /// Ratio of the tip's expected error to a measured target's from which on the reason is stated.
@@ -139,9 +139,9 @@ fn is_tip(model: &Model, name: &str) -> bool {
 }
 
 /// The targets that a calibration measured, with their entries.
-fn measured(model: &Model) -> Vec<(&str, &TargetEntry)> {
+fn measured_targets(model: &Model) -> Vec<(&str, &TargetEntry)> {
     let ModelSource::Calibration(file) = &model.source else { return Vec::new() };
-    let is_measured = |it: &TargetEntry| it.measured() != MeasuredEntry::Nothing;
+    let is_measured = |it: &TargetEntry| it.measured_entry() != MeasuredEntry::Nothing;
     file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, it)| (name.as_str(), it)).collect()
 }
 
@@ -152,7 +152,7 @@ fn measured(model: &Model) -> Vec<(&str, &TargetEntry)> {
 /// [`ErrorKind::Option`] if several targets were measured that the device may see.
 pub fn default_target(model: &Model, frame: PredictionFrame, with_uncertainty: bool) -> Result<Option<&str>> {
     match frame {
-        PredictionFrame::Device => seen(model),
+        PredictionFrame::Device => single_target(model),
         PredictionFrame::Base if with_uncertainty => Ok(on_robot(model)),
         PredictionFrame::Base => Ok(None),
     }
@@ -162,11 +162,12 @@ pub fn default_target(model: &Model, frame: PredictionFrame, with_uncertainty: b
 fn on_robot(model: &Model) -> Option<&str> {
     let robot = &model.robot;
     let is_at_tip = |name: &str| robot.mounted.iter().any(|it| it.name == name && robot.is_at_tip(it));
-    if measured(model).iter().any(|(name, _)| is_at_tip(name)) {
+    if measured_targets(model).iter().any(|(name, _)| is_at_tip(name)) {
         return None;
     }
     let moves = |it: &TargetEntry| !matches!(it.on, Some(BodyEntry::Base));
-    let names: Vec<&str> = measured(model).into_iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
+    let names: Vec<&str> =
+        measured_targets(model).into_iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
     only_target(&names).or_else(|| names.first().copied())
 }
 
@@ -184,7 +185,7 @@ pub fn remark(
     let Some(first) = on_robot(model) else { return Ok(None) };
     match target {
         None if frame == PredictionFrame::Base => {
-            let which = match measured(model).len() {
+            let which = match measured_targets(model).len() {
                 ..=1 => format!("the measured target `{first}`"),
                 count => format!("`{first}`, the first of {count} measured targets"),
             };
@@ -207,8 +208,8 @@ pub fn remark(
 }
 
 /// The only target that a calibration measured; `None` if that is the tip.
-fn seen(model: &Model) -> Result<Option<&str>> {
-    let names: Vec<&str> = measured(model).into_iter().map(|(name, _)| name).collect();
+fn single_target(model: &Model) -> Result<Option<&str>> {
+    let names: Vec<&str> = measured_targets(model).into_iter().map(|(name, _)| name).collect();
     match (names.as_slice(), only_target(&names)) {
         ([], _) => Ok(None),
         (_, Some(only)) => Ok(Some(only)),
@@ -239,9 +240,9 @@ fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(
     };
     let (uncertainty, indices) = file.uncertainty(&[target]).map_err(|error| error.in_file(&model.path))?;
     let width = model.robot.reading_names().len();
-    let packed = Packed::new(&model.robot, readings, width);
+    let packed = PackedValues::new(&model.robot, readings, width);
     let errors = uncertainty.predictions(&packed, indices.first().copied().unwrap_or_default());
-    let sampled = |row: &[f64]| inside(&model.robot, &file.coverage, row);
+    let sampled = |row: &[f64]| is_within_ranges(&model.robot, &file.coverage, row);
     Ok(errors.into_iter().zip(readings.chunks_exact(width.max(1)).map(sampled)).collect())
 }
 
@@ -256,7 +257,7 @@ fn robot_with_target<'a>(model: &'a Model, name: &str) -> Result<(Cow<'a, Robot>
     }
     let mounted = robot.mounted.iter().map(|mount| mount.name.as_str());
     let names: Vec<&str> = robot.targets.iter().map(|(known, _)| known.as_str()).chain(mounted).collect();
-    let expected = match nearest(name, names.iter().copied()) {
+    let expected = match nearest_word(name, names.iter().copied()) {
         Some(near) => format!("expected one of {}; did you mean `{near}`?", first_few(&names)),
         None if !names.is_empty() => format!("expected one of {}", first_few(&names)),
         None => "expected none: the model has no targets, leave out --target to predict the tip".to_owned(),

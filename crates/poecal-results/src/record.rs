@@ -85,10 +85,10 @@ impl Record {
     pub fn from_pairs<'a>(pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
         let mut record = Record::default();
         for (key, text) in pairs {
-            let text = Record::checked(key, text)?;
+            let text = Record::check_text(key, text)?;
             let Some(place) = record.place(key) else { return Err(unknown(key)) };
             if place.is_some() {
-                return Err(refused(format!("found `{key}` twice in the record, expected it once")));
+                return Err(record_error(format!("found `{key}` twice in the record, expected it once")));
             }
             *place = text;
         }
@@ -101,16 +101,16 @@ impl Record {
     /// As [`Record::from_pairs`].
     pub fn pair(text: &str) -> Result<(String, String)> {
         let Some((key, value)) = text.split_once('=') else {
-            return Err(refused(format!("found `{text}`, expected KEY=TEXT, like serial=4711")));
+            return Err(record_error(format!("found `{text}`, expected KEY=TEXT, like serial=4711")));
         };
         let key = key.trim();
-        let value = Record::checked(key, value)?.unwrap_or_default();
+        let value = Record::check_text(key, value)?.unwrap_or_default();
         Ok((key.to_owned(), value))
     }
 
     /// The same record with another's statements in place of its own.
     #[must_use]
-    pub fn overridden(mut self, by: &Record) -> Self {
+    pub fn override_with(mut self, by: &Record) -> Self {
         for (key, _, text) in by.entries() {
             if let Some(place) = self.place(key) {
                 *place = Some(text.to_owned());
@@ -126,13 +126,13 @@ impl Record {
     }
 
     /// A text as it is stored; `None` for an empty one.
-    fn checked(key: &str, text: &str) -> Result<Option<String>> {
+    fn check_text(key: &str, text: &str) -> Result<Option<String>> {
         if !Record::KEYS.contains(&key) {
             return Err(unknown(key));
         }
         let text = text.trim();
         if let Some(c) = text.chars().find(|c| acts(*c)) {
-            return Err(refused(format!(
+            return Err(record_error(format!(
                 "found the character U+{:04X} in `{key}`, expected one line of text without control characters",
                 u32::from(c)
             )));
@@ -140,15 +140,16 @@ impl Record {
         let most = if key == "note" { LONGEST_NOTE } else { LONGEST };
         let count = text.chars().count();
         if count > most {
-            return Err(refused(format!("found {count} letters in `{key}`, expected at most {most}")));
+            return Err(record_error(format!("found {count} letters in `{key}`, expected at most {most}")));
         }
         match key {
             _ if text.is_empty() => Ok(None),
-            "date" | "instrument_calibrated" | "valid_until" if !is_date(text) => {
-                Err(refused(format!("found `{text}` as the {}, expected a day like 2026-03-02", named(key))))
-            }
+            "date" | "instrument_calibrated" | "valid_until" if !is_date(text) => Err(record_error(format!(
+                "found `{text}` as the {}, expected a day like 2026-03-02",
+                day_name(key)
+            ))),
             "temperature" => temperature(text).map(Some).ok_or_else(|| {
-                refused(format!(
+                record_error(format!(
                     "found `{text}` as the temperature, expected degrees Celsius, like 21.5C or 21.5+-0.5C"
                 ))
             }),
@@ -158,7 +159,7 @@ impl Record {
 }
 
 /// A day of the record in words.
-fn named(key: &str) -> &'static str {
+fn day_name(key: &str) -> &'static str {
     match key {
         "instrument_calibrated" => "day of the instrument's calibration",
         "valid_until" => "day until which it is valid",
@@ -166,13 +167,13 @@ fn named(key: &str) -> &'static str {
     }
 }
 
-fn refused(message: String) -> Error {
+fn record_error(message: String) -> Error {
     ErrorKind::Option.error(message)
 }
 
 fn unknown(key: &str) -> Error {
     let near = nearest_or_all(key, Record::KEYS);
-    refused(format!("found the key `{key}`, expected one of the record: {near}"))
+    record_error(format!("found the key `{key}`, expected one of the record: {near}"))
 }
 
 /// True if it is a day of the calendar, `YYYY-MM-DD`.

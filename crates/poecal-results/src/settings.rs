@@ -6,10 +6,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use poecal_numerics::error::{Error, ErrorKind, Result, nearest_or_all, position};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text;
 
-use crate::renamed::new_key;
+use crate::renamed_words::new_key;
 
 /// Key with the version of the file.
 const VERSION_KEY: &str = "poecal_settings";
@@ -30,7 +30,7 @@ pub enum SettingValue {
 
 /// One line of a settings file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Setting {
+pub struct SettingLine {
     /// Key.
     pub key: String,
     /// Value.
@@ -47,7 +47,7 @@ pub struct Settings {
     /// File name as stated by the user.
     pub path: PathBuf,
     /// The settings, in the order of their lines.
-    pub entries: Vec<Setting>,
+    pub entries: Vec<SettingLine>,
 }
 
 impl Settings {
@@ -58,7 +58,11 @@ impl Settings {
     pub fn read(path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
         let path = path.as_ref();
         Settings::parse(
-            &source_text::read_up_to(path, "settings (TOML, as `poecal init` writes them)", Limit::Settings)?,
+            &source_text::read_up_to(
+                path,
+                "settings (TOML, as `poecal init` writes them)",
+                ResourceLimit::Settings,
+            )?,
             path,
             keys,
         )
@@ -84,7 +88,7 @@ impl Settings {
         for (key, value) in table.get_ref() {
             let start = value.span().start;
             if key.get_ref() == VERSION_KEY {
-                versioned = plain(value).is_some_and(|number| number == "1");
+                versioned = text_or_number(value).is_some_and(|number| number == "1");
                 continue;
             }
             if !keys.contains(&key.get_ref().as_ref()) {
@@ -98,7 +102,7 @@ impl Settings {
             {
                 for (own, value) in table {
                     let start = value.span().start;
-                    let typed = dated(value).ok_or_else(|| {
+                    let typed = text_or_date(value).ok_or_else(|| {
                         let message = format!(
                             "found {} for `{}` of `{TABLE}`, expected a text or a number",
                             value.get_ref().type_str(),
@@ -108,7 +112,7 @@ impl Settings {
                     })?;
                     let (line, column) = position(text, start);
                     let value = SettingValue::One(format!("{}={typed}", own.get_ref()));
-                    entries.push(Setting { key: TABLE.to_owned(), value, line, column });
+                    entries.push(SettingLine { key: TABLE.to_owned(), value, line, column });
                 }
                 continue;
             }
@@ -121,7 +125,7 @@ impl Settings {
                 at(start, message)
             })?;
             let (line, column) = position(text, start);
-            entries.push(Setting { key: key.get_ref().to_string(), value, line, column });
+            entries.push(SettingLine { key: key.get_ref().to_string(), value, line, column });
         }
         if !versioned {
             return Err(ErrorKind::Syntax.error(format!(
@@ -134,30 +138,32 @@ impl Settings {
 
     /// An error at one of the settings.
     #[must_use]
-    pub fn error(&self, entry: &Setting, message: impl Into<String>) -> Error {
-        ErrorKind::Option.error(message).at(&self.path, entry.line, entry.column)
+    pub fn error(&self, entry: &SettingLine, message: impl Into<String>) -> Error {
+        ErrorKind::Option.error(message).at_position(&self.path, entry.line, entry.column)
     }
 }
 
 fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
     match value.get_ref() {
         DeValue::Boolean(on) => Some(SettingValue::Switch(*on)),
-        DeValue::Array(items) => items.iter().map(plain).collect::<Option<_>>().map(SettingValue::Many),
+        DeValue::Array(items) => {
+            items.iter().map(text_or_number).collect::<Option<_>>().map(SettingValue::Many)
+        }
         DeValue::String(_)
         | DeValue::Integer(_)
         | DeValue::Float(_)
         | DeValue::Datetime(_)
-        | DeValue::Table(_) => plain(value).map(SettingValue::One),
+        | DeValue::Table(_) => text_or_number(value).map(SettingValue::One),
     }
 }
 
 /// Text, number or date, as typed.
-fn dated(value: &Spanned<DeValue>) -> Option<String> {
-    if let DeValue::Datetime(date) = value.get_ref() { Some(date.to_string()) } else { plain(value) }
+fn text_or_date(value: &Spanned<DeValue>) -> Option<String> {
+    if let DeValue::Datetime(date) = value.get_ref() { Some(date.to_string()) } else { text_or_number(value) }
 }
 
 /// Text or number, as typed.
-fn plain(value: &Spanned<DeValue>) -> Option<String> {
+fn text_or_number(value: &Spanned<DeValue>) -> Option<String> {
     match value.get_ref() {
         DeValue::String(text) => Some(text.to_string()),
         DeValue::Integer(number) if number.radix() == 10 => Some(number.as_str().to_owned()),
@@ -176,7 +182,7 @@ mod tests {
 
     const KEYS: [&str; 4] = ["model", "measurements", "held_out", "force"];
 
-    fn refused(text: &str) -> String {
+    fn refuse_settings(text: &str) -> String {
         Settings::parse(text, "s.toml", &KEYS).unwrap_err().to_string()
     }
 
@@ -202,27 +208,27 @@ mod tests {
     #[test]
     fn mistakes_are_told_with_their_place() {
         assert_eq!(
-            refused("model = 'robot.urdf'\n"),
+            refuse_settings("model = 'robot.urdf'\n"),
             "s.toml: found no `poecal_settings = 1`, expected settings with this line, the version of their form"
         );
         assert_eq!(
-            refused("poecal_settings = 1\nmodle = 'robot.urdf'\n"),
+            refuse_settings("poecal_settings = 1\nmodle = 'robot.urdf'\n"),
             "s.toml:2:1: found the key `modle`, expected a setting: the nearest is `model`"
         );
         assert_eq!(
-            refused("poecal_settings = 1\n[model]\n"),
+            refuse_settings("poecal_settings = 1\n[model]\n"),
             "s.toml:2:1: found table for `model`, expected a text, a number, true, false, or a list of texts or numbers"
         );
         assert_eq!(
-            refused("poecal_settings = 1\nheld_out = [[1]]\n"),
+            refuse_settings("poecal_settings = 1\nheld_out = [[1]]\n"),
             "s.toml:2:12: found array for `held_out`, expected a text, a number, true, false, or a list of texts or numbers"
         );
-        assert!(refused("poecal_settings = 1\nmodel = \n").starts_with("s.toml:2:"));
+        assert!(refuse_settings("poecal_settings = 1\nmodel = \n").starts_with("s.toml:2:"));
         assert!(
-            refused("poecal_settings = 1\nmodel = 'a'\nmodel = 'b'\n")
+            refuse_settings("poecal_settings = 1\nmodel = 'a'\nmodel = 'b'\n")
                 .starts_with("s.toml:3:1: duplicate key")
         );
-        assert!(refused("poecal_settings = 2\n").contains("poecal_settings = 1"));
+        assert!(refuse_settings("poecal_settings = 2\n").contains("poecal_settings = 1"));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::{NamedFrame, ToolBounds, ToolForm, tool_forms};
-use poecal_fit::hand_eye::{Level, Tool};
+use poecal_fit::hand_eye::{HandEyeLevel, TouchedTool};
 use poecal_import::FlangePoses;
 use poecal_numerics::error::Result;
 use poecal_storage::json_text;
@@ -16,7 +16,7 @@ pub const SCHEMA: &str = "poecal-tcp-1";
 #[derive(Clone, Copy, Debug)]
 pub struct ToolResult<'a> {
     /// The result.
-    pub found: &'a Tool,
+    pub found: &'a TouchedTool,
     /// The touches.
     pub poses: &'a FlangePoses,
     /// The command that makes the same result; empty if there is none.
@@ -24,14 +24,14 @@ pub struct ToolResult<'a> {
 }
 
 #[derive(Serialize)]
-struct File<'a> {
+struct TcpFile<'a> {
     schema: &'static str,
     poecal_version: &'static str,
     inputs: InputsEntry<'a>,
     verdict: VerdictEntry<'a>,
     tips: Vec<TipEntry<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    axis: Option<AxisEntry>,
+    axis: Option<ToolAxisEntry>,
     tool: ToolEntry,
     touches: usize,
     fitted: usize,
@@ -50,7 +50,7 @@ struct TipEntry<'a> {
 }
 
 #[derive(Serialize)]
-struct AxisEntry {
+struct ToolAxisEntry {
     direction: [f64; 3],
     bound95_deg: f64,
 }
@@ -75,7 +75,7 @@ impl ToolResult<'_> {
     /// The tool in the forms of controllers; empty for one that is not to be used.
     #[must_use]
     pub fn forms(&self) -> Vec<ToolForm> {
-        if self.found.level == Level::DoNotUse {
+        if self.found.level == HandEyeLevel::DoNotUse {
             return Vec::new();
         }
         let tip_m = self.found.tips.first().map_or(0.0, |it| it.placed.bound95_m);
@@ -98,7 +98,7 @@ impl ToolResult<'_> {
     pub fn to_text(&self) -> Result<String> {
         let found = self.found;
         let frame = self.frame();
-        let file = File {
+        let file = TcpFile {
             schema: SCHEMA,
             poecal_version: env!("CARGO_PKG_VERSION"),
             inputs: InputsEntry {
@@ -117,7 +117,7 @@ impl ToolResult<'_> {
                     sigma_mm: (1e3 * it.placed.sigma_m).into(),
                 })
                 .collect(),
-            axis: found.axis.map(|(direction, bound)| AxisEntry {
+            axis: found.axis.map(|(direction, bound)| ToolAxisEntry {
                 direction: direction.into(),
                 bound95_deg: bound.to_degrees(),
             }),

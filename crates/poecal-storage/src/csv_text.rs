@@ -39,7 +39,7 @@ fn is_plain(text: &str) -> bool {
 }
 
 /// The text of a cell, without the apostrophe of [`cell`].
-pub fn plain(text: &str) -> &str {
+pub fn plain_cell(text: &str) -> &str {
     match text.strip_prefix(MARK) {
         Some(rest) if rest.starts_with(|c| c == MARK || is_run(c)) => rest,
         _ => text,
@@ -80,6 +80,6 @@ mod tests {
             assert_eq!(cell(text), expected);
         }
         // An apostrophe in a foreign file stays.
-        assert_eq!((plain("'abc"), plain("'"), plain("5'")), ("'abc", "'", "5'"));
+        assert_eq!((plain_cell("'abc"), plain_cell("'"), plain_cell("5'")), ("'abc", "'", "5'"));
     }
 }

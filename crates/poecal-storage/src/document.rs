@@ -22,7 +22,7 @@ const MOST_OPEN: usize = 64;
 
 thread_local! {
     /// The open inputs of this thread, within [`reading`].
-    static OPEN: RefCell<Option<BTreeMap<PathBuf, Document>>> = const { RefCell::new(None) };
+    static OPEN: RefCell<Option<BTreeMap<PathBuf, InputDocument>>> = const { RefCell::new(None) };
 }
 
 /// Runs `work`, during which this thread opens each input once.
@@ -30,7 +30,7 @@ pub fn reading<T>(work: impl FnOnce() -> T) -> T {
     if OPEN.with_borrow(Option::is_some) {
         return work();
     }
-    let _end = End;
+    let _end = InputGuard;
     OPEN.set(Some(BTreeMap::new()));
     work()
 }
@@ -38,7 +38,8 @@ pub fn reading<T>(work: impl FnOnce() -> T) -> T {
 /// Runs `work` like [`reading`], with an input of this name and text, which is on no disk.
 pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
     reading(|| {
-        let before = keep(name, Some(Document::new(Box::new(Cursor::new(text.as_bytes().to_vec())), None)));
+        let before =
+            keep(name, Some(InputDocument::new(Box::new(Cursor::new(text.as_bytes().to_vec())), None)));
         let done = work();
         keep(name, before);
         done
@@ -46,7 +47,7 @@ pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
 }
 
 /// Keeps this as the input of a path, or nothing; returns the previous input.
-fn keep(path: &Path, document: Option<Document>) -> Option<Document> {
+fn keep(path: &Path, document: Option<InputDocument>) -> Option<InputDocument> {
     OPEN.with_borrow_mut(|all| match document {
         Some(document) => all.as_mut()?.insert(path.to_path_buf(), document),
         None => all.as_mut()?.remove(path),
@@ -59,9 +60,9 @@ pub fn is_kept(path: &Path) -> bool {
 }
 
 /// Forgets all inputs, also after a panic.
-struct End;
+struct InputGuard;
 
-impl Drop for End {
+impl Drop for InputGuard {
     fn drop(&mut self) {
         OPEN.set(None);
     }
@@ -73,16 +74,16 @@ pub fn forget() {
 }
 
 /// A reader of an input from its beginning: from the kept bytes, then from the source that `open` opens.
-pub(crate) fn open(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<Source> {
+pub(crate) fn open(path: &Path, open: impl FnOnce() -> Result<ByteSource>) -> Result<ByteSource> {
     let kept = OPEN.with_borrow(|all| all.as_ref().map(|all| all.get(path).cloned()));
     Ok(match kept {
         None => open()?,
-        Some(Some(document)) => Box::new(Reader::Kept(document)),
+        Some(Some(document)) => Box::new(DocumentReader::Kept(document)),
         Some(None) => {
             close_most();
-            let document = Document::new(open()?, disk::is_file(path).then(|| path.to_path_buf()));
+            let document = InputDocument::new(open()?, disk::is_file(path).then(|| path.to_path_buf()));
             keep(path, Some(document.clone()));
-            Box::new(Reader::Kept(document))
+            Box::new(DocumentReader::Kept(document))
         }
     })
 }
@@ -92,18 +93,23 @@ fn close_most() {
     OPEN.with_borrow(|all| {
         let all = all.iter().flatten().map(|it| it.1);
         if all.clone().count() >= MOST_OPEN {
-            all.for_each(|document| document.kept().close());
+            all.for_each(|document| document.kept_input().close());
         }
     });
 }
 
 /// A reader of an input from its beginning, if it is kept.
-pub(crate) fn again(path: &Path) -> Option<Source> {
-    OPEN.with_borrow(|all| Some(Box::new(Reader::Kept(all.as_ref()?.get(path)?.clone())) as Source))
+pub(crate) fn reopen(path: &Path) -> Option<ByteSource> {
+    OPEN.with_borrow(|all| {
+        Some(Box::new(DocumentReader::Kept(all.as_ref()?.get(path)?.clone())) as ByteSource)
+    })
 }
 
 /// A reader of an input whose bytes are no longer kept: bytes that were read before are read again.
-pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<io::Result<Source>> {
+pub(crate) fn stream(
+    path: &Path,
+    open: impl FnOnce() -> Result<ByteSource>,
+) -> Result<io::Result<ByteSource>> {
     match OPEN.with_borrow_mut(|all| all.as_mut()?.remove(path)) {
         None => open().map(Ok),
         Some(document) => Ok(document.into_stream()),
@@ -111,18 +117,18 @@ pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Resu
 }
 
 /// Bytes that are still to be read.
-pub(crate) type Source = Box<dyn Read + Send>;
+pub(crate) type ByteSource = Box<dyn Read + Send>;
 
 /// The bytes that were read from an input, and the rest of it.
-struct Kept {
+struct BufferedInput {
     bytes: Vec<u8>,
     /// `None` for a file that was closed.
-    rest: Option<Source>,
+    rest: Option<ByteSource>,
     /// The path of a file, which can be opened again.
     path: Option<PathBuf>,
 }
 
-impl Kept {
+impl BufferedInput {
     fn close(&mut self) {
         if self.path.is_some() {
             self.rest = None;
@@ -130,11 +136,11 @@ impl Kept {
     }
 
     /// The rest, opened again if it was closed.
-    fn take_rest(&mut self) -> io::Result<Source> {
+    fn take_rest(&mut self) -> io::Result<ByteSource> {
         let Some(path) = self.path.as_ref().filter(|_| self.rest.is_none()) else {
             return Ok(self.rest.take().unwrap_or_else(|| Box::new(io::empty())));
         };
-        let mut again = disk::here().open(path)?;
+        let mut again = disk::current_disk().open(path)?;
         io::copy(&mut again.by_ref().take(self.bytes.len() as u64), &mut io::sink())?;
         Ok(again)
     }
@@ -142,21 +148,24 @@ impl Kept {
 
 /// An input, read from its beginning.
 #[derive(Clone)]
-struct Document {
-    kept: Arc<Mutex<Kept>>,
+struct InputDocument {
+    kept: Arc<Mutex<BufferedInput>>,
     at: usize,
 }
 
-impl Document {
-    fn new(rest: Source, path: Option<PathBuf>) -> Self {
-        Document { kept: Arc::new(Mutex::new(Kept { bytes: Vec::new(), rest: Some(rest), path })), at: 0 }
+impl InputDocument {
+    fn new(rest: ByteSource, path: Option<PathBuf>) -> Self {
+        InputDocument {
+            kept: Arc::new(Mutex::new(BufferedInput { bytes: Vec::new(), rest: Some(rest), path })),
+            at: 0,
+        }
     }
 
-    fn kept(&self) -> MutexGuard<'_, Kept> {
+    fn kept_input(&self) -> MutexGuard<'_, BufferedInput> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn into_stream(self) -> io::Result<Source> {
+    fn into_stream(self) -> io::Result<ByteSource> {
         match Arc::try_unwrap(self.kept) {
             Ok(kept) => {
                 let mut kept = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -164,22 +173,22 @@ impl Document {
                 Ok(Box::new(Cursor::new(kept.bytes).chain(rest)))
             }
             // Another reader uses it at the moment.
-            Err(kept) => Ok(Box::new(Reader::Kept(Document { kept, at: 0 }))),
+            Err(kept) => Ok(Box::new(DocumentReader::Kept(InputDocument { kept, at: 0 }))),
         }
     }
 }
 
 /// A reader of an input: of the kept bytes, or of the rest of a file, which is not kept.
-enum Reader {
-    Kept(Document),
-    Rest(Source),
+enum DocumentReader {
+    Kept(InputDocument),
+    Rest(ByteSource),
 }
 
-impl Read for Reader {
+impl Read for DocumentReader {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let document = match self {
-            Reader::Rest(rest) => return rest.read(into),
-            Reader::Kept(document) => document,
+            DocumentReader::Rest(rest) => return rest.read(into),
+            DocumentReader::Kept(document) => document,
         };
         let mut kept = document.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if document.at == kept.bytes.len() {
@@ -187,7 +196,7 @@ impl Read for Reader {
             if kept.path.is_some() && kept.bytes.len() >= MOST_KEPT {
                 drop(kept);
                 let count = rest.read(into)?;
-                *self = Reader::Rest(rest);
+                *self = DocumentReader::Rest(rest);
                 return Ok(count);
             }
             let read = rest.by_ref().take(BLOCK.max(into.len()) as u64).read_to_end(&mut kept.bytes);
@@ -263,9 +272,9 @@ mod tests {
         let text = |k: usize| format!("{k:06}").repeat(BLOCK / 4).into_bytes();
         let paths: Vec<PathBuf> = (0..MOST_OPEN + 6).map(|k| folder.join(k.to_string())).collect();
         paths.iter().enumerate().for_each(|(k, path)| std::fs::write(path, text(k)).unwrap());
-        let source = |path: &PathBuf| open(path, || Ok(disk::here().open(path).unwrap())).unwrap();
+        let source = |path: &PathBuf| open(path, || Ok(disk::current_disk().open(path).unwrap())).unwrap();
         reading(|| {
-            let mut begun: Vec<Source> = paths.iter().map(source).collect();
+            let mut begun: Vec<ByteSource> = paths.iter().map(source).collect();
             let mut head = [0; 10];
             begun.iter_mut().for_each(|it| it.read_exact(&mut head).unwrap());
             for (k, (path, begun)) in paths.iter().zip(&mut begun).enumerate() {

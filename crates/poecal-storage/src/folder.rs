@@ -5,18 +5,18 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::disk::{self, ObjectKind};
-use super::limits::Limit;
+use super::limits::ResourceLimit;
 
 /// A member of a folder that is not taken.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct LeftOut {
+pub struct SkippedEntry {
     /// Its path; in a name that is not UTF-8, invalid bytes are replaced by signs.
     pub path: PathBuf,
     /// The reason, as a noun.
     pub reason: &'static str,
 }
 
-impl fmt::Display for LeftOut {
+impl fmt::Display for SkippedEntry {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}: left out, since it is {}", self.path.display(), self.reason)
     }
@@ -25,12 +25,12 @@ impl fmt::Display for LeftOut {
 /// The names in a folder, and those that are not UTF-8.
 ///
 /// # Errors
-/// Those of the system, and more names than [`Limit::Files`].
-pub fn names(folder: &Path) -> io::Result<(Vec<String>, Vec<LeftOut>)> {
-    let all = disk::here().names(folder)?;
-    let most = Limit::Files.most();
+/// Those of the system, and more names than [`ResourceLimit::Files`].
+pub fn names(folder: &Path) -> io::Result<(Vec<String>, Vec<SkippedEntry>)> {
+    let all = disk::current_disk().names(folder)?;
+    let most = ResourceLimit::Files.value();
     if all.len() as u64 > most {
-        return Err(io::Error::other(Limit::Files.sentence(&format!("{} files", all.len()))));
+        return Err(io::Error::other(ResourceLimit::Files.sentence(&format!("{} files", all.len()))));
     }
     let (mut found, mut left) = (Vec::with_capacity(all.len()), Vec::new());
     for name in all {
@@ -38,7 +38,7 @@ pub fn names(folder: &Path) -> io::Result<(Vec<String>, Vec<LeftOut>)> {
             Ok(name) => found.push(name),
             Err(name) => {
                 let path = folder.join(name.to_string_lossy().as_ref());
-                left.push(LeftOut { path, reason: "a name that is no UTF-8" });
+                left.push(SkippedEntry { path, reason: "a name that is no UTF-8" });
             }
         }
     }
@@ -49,14 +49,14 @@ pub fn names(folder: &Path) -> io::Result<(Vec<String>, Vec<LeftOut>)> {
 ///
 /// # Errors
 /// The reason why it is neither.
-pub fn kind(root: &Path, path: &Path) -> Result<ObjectKind, LeftOut> {
-    let disk = disk::here();
-    let left = |reason| LeftOut { path: path.to_owned(), reason };
+pub fn kind(root: &Path, path: &Path) -> Result<ObjectKind, SkippedEntry> {
+    let disk = disk::current_disk();
+    let left = |reason| SkippedEntry { path: path.to_owned(), reason };
     let unknown = |_| left("nothing that can be looked at");
     let own = disk.look(path).map_err(unknown)?;
     let found = if own.kind == ObjectKind::Link {
-        let actual = disk.actual(path).map_err(|_| left("a link that leads nowhere"))?;
-        let home = disk.actual(root).map_err(unknown)?;
+        let actual = disk.canonical_path(path).map_err(|_| left("a link that leads nowhere"))?;
+        let home = disk.canonical_path(root).map_err(unknown)?;
         if !actual.starts_with(&home) {
             return Err(left("a link that leads out of the folder"));
         }
@@ -74,7 +74,10 @@ pub fn kind(root: &Path, path: &Path) -> Result<ObjectKind, LeftOut> {
 ///
 /// # Errors
 /// Those of [`names`].
-pub fn files(folder: &Path, is_wanted: impl Fn(&str) -> bool) -> io::Result<(Vec<String>, Vec<LeftOut>)> {
+pub fn files(
+    folder: &Path,
+    is_wanted: impl Fn(&str) -> bool,
+) -> io::Result<(Vec<String>, Vec<SkippedEntry>)> {
     let (names, mut left) = names(folder)?;
     let mut found = Vec::new();
     for name in names.into_iter().filter(|name| is_wanted(name)) {
@@ -109,8 +112,8 @@ mod tests {
         symlink("nothing", folder.join("nowhere.csv")).unwrap();
         let socket = std::os::unix::net::UnixListener::bind(folder.join("pipe.csv")).unwrap();
         let (found, left) = files(&folder, |name| name.ends_with(".csv")).unwrap();
-        let few = limits::here().with(Limit::Files, 3);
-        let refused = limits::on(few, || files(&folder, |_| true)).unwrap_err().to_string();
+        let few = limits::current_limits().with_limit(ResourceLimit::Files, 3);
+        let refused = limits::run_with_limits(few, || files(&folder, |_| true)).unwrap_err().to_string();
         drop(socket);
         std::fs::remove_dir_all(&home).unwrap();
         assert_eq!(found, ["a.csv", "within.csv"]);

@@ -16,14 +16,14 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// # Errors
 /// [`ErrorKind::File`] if it cannot be read.
 pub fn sha256(path: &Path) -> Result<Option<String>> {
-    let disk = disk::here();
+    let disk = disk::current_disk();
     if is_standard_input(path) || disk.follow(path).is_ok_and(|found| found.kind != ObjectKind::File) {
         return Ok(None);
     }
     let read = || {
         // The checksum is over the bytes that were read before, if any.
-        let file = document::again(path).map_or_else(|| disk.open(path), Ok)?;
-        let mut file = Hashing::new(file);
+        let file = document::reopen(path).map_or_else(|| disk.open(path), Ok)?;
+        let mut file = HashingReader::new(file);
         io::copy(&mut file, &mut io::sink())?;
         Ok(Some(file.sha256()))
     };
@@ -38,27 +38,27 @@ pub fn sha256(path: &Path) -> Result<Option<String>> {
 
 /// SHA-256 of a text, as hexadecimal digits.
 pub fn sha256_of(text: &str) -> String {
-    let mut hashing = Hashing::new(io::empty());
+    let mut hashing = HashingReader::new(io::empty());
     hashing.hasher.update(text.as_bytes());
     hashing.sha256()
 }
 
 /// A reader that computes the checksum of the bytes read.
-pub struct Hashing<R> {
+pub struct HashingReader<R> {
     source: R,
     hasher: Sha256,
 }
 
-impl<R: Read> Hashing<R> {
+impl<R: Read> HashingReader<R> {
     /// Reads from `source`.
     pub fn new(source: R) -> Self {
-        Hashing { source, hasher: Sha256::new() }
+        HashingReader { source, hasher: Sha256::new() }
     }
 
     /// Continues the checksum with another source.
     #[cfg(feature = "bags")]
-    pub fn over(self, source: R) -> Self {
-        Hashing { source, ..self }
+    pub fn continue_with(self, source: R) -> Self {
+        HashingReader { source, ..self }
     }
 
     /// SHA-256 of the bytes read so far, as hexadecimal digits.
@@ -72,7 +72,7 @@ impl<R: Read> Hashing<R> {
     }
 }
 
-impl<R: Read> Read for Hashing<R> {
+impl<R: Read> Read for HashingReader<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let count = self.source.read(into)?;
         self.hasher.update(into.get(..count).unwrap_or_default());

@@ -8,8 +8,8 @@ use poecal_numerics::error::{ErrorKind, Result};
 
 /// Canonical path of an existing file. Other paths stay unchanged, for the reader's error.
 #[must_use]
-pub fn actual(path: &Path) -> PathBuf {
-    disk::here().actual(path).unwrap_or_else(|_| path.to_owned())
+pub fn canonical_path(path: &Path) -> PathBuf {
+    disk::current_disk().canonical_path(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// True if two paths lead to the same file, also by links.
@@ -17,7 +17,7 @@ pub fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
     let (Ok(one_found), Ok(other_found)) = (disk.follow(one), disk.follow(other)) else { return false };
     match (one_found.identity, other_found.identity) {
         (Some(one), Some(other)) => one == other,
-        _ => disk.actual(one).ok() == disk.actual(other).ok(),
+        _ => disk.canonical_path(one).ok() == disk.canonical_path(other).ok(),
     }
 }
 
@@ -28,7 +28,7 @@ pub fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
 pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
     let mut seen = HashSet::new();
     refuse(
-        paths.iter().find(|path| !seen.insert(actual(path))),
+        paths.iter().find(|path| !seen.insert(canonical_path(path))),
         "found this measurement file named twice, expected every file once, since the same rows \
          twice are not more data: leave one out",
     )
@@ -39,9 +39,9 @@ pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
 /// # Errors
 /// [`ErrorKind::Option`].
 pub fn refuse_fitted(judges: &[PathBuf], fitted: &[PathBuf]) -> Result<()> {
-    let fitted: HashSet<PathBuf> = fitted.iter().map(|path| actual(path)).collect();
+    let fitted: HashSet<PathBuf> = fitted.iter().map(|path| canonical_path(path)).collect();
     refuse(
-        judges.iter().find(|path| fitted.contains(&actual(path))),
+        judges.iter().find(|path| fitted.contains(&canonical_path(path))),
         "found this file to be fitted and in --validate, expected one of the two, since a fit is \
          judged by rows that it did not see: leave one out",
     )

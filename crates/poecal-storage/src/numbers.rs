@@ -4,7 +4,7 @@
 pub const LARGEST_NUMBER: f64 = 1e6;
 
 /// The shortest decimal that reads back as the same number.
-pub fn shortest(number: f64) -> String {
+pub fn format_shortest(number: f64) -> String {
     let text = format!("{number:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
@@ -19,7 +19,7 @@ pub fn push_number(out: &mut String, number: f64) {
 
 /// Removes the rounding of products: a number within 1e-15 of a number with twelve decimals becomes that number, 0.2025 for 0.20249999999999999 and
 /// 0 for 6e-17.
-pub fn tidy<const N: usize>(numbers: [f64; N]) -> [f64; N] {
+pub fn tidy_numbers<const N: usize>(numbers: [f64; N]) -> [f64; N] {
     numbers.map(|number| {
         let rounded = (number * 1e12).round() / 1e12;
         // Adding zero makes negative zero positive.
@@ -34,11 +34,11 @@ mod tests {
     #[test]
     fn numbers_are_short_and_read_back() {
         assert_eq!(
-            tidy([0.202_499_999_999_999_99, -6e-17, 0.123_456_789_012_345_6]).map(shortest),
+            tidy_numbers([0.202_499_999_999_999_99, -6e-17, 0.123_456_789_012_345_6]).map(format_shortest),
             ["0.2025", "0", "0.1234567890123456"]
         );
         for number in [1.0, -0.1, 1e-7, 0.1 + 0.2, f64::MIN_POSITIVE] {
-            assert_eq!(shortest(number).parse(), Ok(number));
+            assert_eq!(format_shortest(number).parse(), Ok(number));
             let mut text = String::new();
             push_number(&mut text, number);
             assert_eq!(text.parse(), Ok(number));

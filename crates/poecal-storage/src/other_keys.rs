@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 
-use crate::yaml::Leaf;
+use crate::yaml::YamlLeaf;
 
 /// Parts of names of keys that describe the processing of the sensor's pictures, or a scale of numbers.
 const CHANGES: [&str; 17] = [
@@ -41,7 +41,7 @@ const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
 
 /// Subject of the keys of a file, for the sentence of a key that changes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeysOf {
+pub enum KeyOwner {
     /// A camera's pictures.
     Pictures,
     /// A board.
@@ -50,13 +50,13 @@ pub enum KeysOf {
     Robot,
 }
 
-impl KeysOf {
+impl KeyOwner {
     /// The expected state, and the remedy.
     fn as_they_are(self) -> &'static str {
         match self {
-            KeysOf::Pictures => "numbers of the pictures as they are: state them for these pictures",
-            KeysOf::Board => "the board as it is printed: state its own numbers",
-            KeysOf::Robot => "lengths and angles as they are: work it into them",
+            KeyOwner::Pictures => "numbers of the pictures as they are: state them for these pictures",
+            KeyOwner::Board => "the board as it is printed: state its own numbers",
+            KeyOwner::Robot => "lengths and angles as they are: work it into them",
         }
     }
 }
@@ -67,10 +67,10 @@ impl KeysOf {
 /// # Errors
 /// [`ErrorKind::Measurement`] for a key that scales or shifts the numbers, with its position.
 pub fn other_keys(
-    leaves: &[Leaf],
+    leaves: &[YamlLeaf],
     at: usize,
     read: impl Fn(&str) -> bool,
-    (of, path): (KeysOf, &Path),
+    (of, path): (KeyOwner, &Path),
 ) -> Result<Option<String>> {
     let mut others: Vec<String> = Vec::new();
     for leaf in leaves {
@@ -80,7 +80,7 @@ pub fn other_keys(
             continue;
         }
         if !changes(leaf, at) {
-            let word = format!("`{}`", visible(key));
+            let word = format!("`{}`", escape_invisible(key));
             if !others.contains(&word) {
                 others.push(word);
             }
@@ -98,7 +98,7 @@ pub fn other_keys(
 }
 
 /// True if a key scales or shifts.
-fn changes(leaf: &Leaf, at: usize) -> bool {
+fn changes(leaf: &YamlLeaf, at: usize) -> bool {
     let keys: Vec<String> = leaf.path.iter().skip(at).map(|key| key.to_lowercase()).collect();
     let is_one = |key: &String| {
         CHANGES.iter().any(|part| key.contains(part)) || CHANGES_BY_NAME.contains(&key.as_str())
@@ -108,7 +108,7 @@ fn changes(leaf: &Leaf, at: usize) -> bool {
 }
 
 /// True if a key that scales or shifts has a value without any effect.
-fn is_neutral(leaf: &Leaf, at: usize) -> bool {
+fn is_neutral(leaf: &YamlLeaf, at: usize) -> bool {
     // For these, 1 is no neutral value.
     const SHIFTS: [&str; 5] = ["offset", "shift", "flip", "mirror", "invert"];
     let is_shift = |key: &String| SHIFTS.iter().any(|part| key.to_lowercase().contains(part));

@@ -1,11 +1,11 @@
-//! Opening of inputs, files and standard input: of limited size ([`Limit`]), and no archive or workbook.
+//! Opening of inputs, files and standard input: of limited size ([`ResourceLimit`]), and no archive or workbook.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use super::disk::{self, ObjectKind};
-use super::document::{self, Source};
-use super::limits::{Limit, amount};
+use super::document::{self, ByteSource};
+use super::limits::{ResourceLimit, amount};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// The path that means standard input.
@@ -24,7 +24,7 @@ const BAG: &str = if cfg!(feature = "bags") {
 pub const SQLITE_BAG: &str = "a ROS 2 bag in SQLite (.db3), which the Python package reads (`Measurements.from_files`); `rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP";
 
 /// A form of files that is not read as a text.
-struct Form {
+struct BinaryForm {
     /// Beginnings of its files; empty if these are not specific.
     starts: &'static [&'static [u8]],
     /// Endings of their names, in small letters, if they begin like other files or like a text.
@@ -33,12 +33,16 @@ struct Form {
     words: &'static str,
 }
 
-const fn form(starts: &'static [&'static [u8]], ends: &'static [&'static str], words: &'static str) -> Form {
-    Form { starts, ends, words }
+const fn form(
+    starts: &'static [&'static [u8]],
+    ends: &'static [&'static str],
+    words: &'static str,
+) -> BinaryForm {
+    BinaryForm { starts, ends, words }
 }
 
 /// Forms that are not read as a text.
-const FORMS: [Form; 22] = [
+const FORMS: [BinaryForm; 22] = [
     form(&[b"ISO-10303-21;"], &["step", "stp"], "a STEP file, which has shapes and no joints"),
     form(&[], &["igs", "iges"], "an IGES file, which has shapes and no joints"),
     form(&[], &["stl", "dae", "obj", "ply", "glb", "gltf", "3mf"], "a mesh, which has a shape and no joints"),
@@ -99,7 +103,7 @@ const FORMS: [Form; 22] = [
     form(&[], &["mp4", "avi", "mov", "mkv"], "a film"),
 ];
 
-impl Form {
+impl BinaryForm {
     /// The error of a file of this form.
     fn error(&self, path: &Path, expected: &str) -> Error {
         ErrorKind::File.error(format!("found {}, expected {expected}", self.words)).in_file(path)
@@ -109,15 +113,15 @@ impl Form {
 /// An input. Reading beyond its largest size is an error.
 pub struct Input {
     /// The head, which is examined first, and the rest.
-    bytes: io::Chain<Cursor<Vec<u8>>, io::Take<Source>>,
-    limit: Limit,
+    bytes: io::Chain<Cursor<Vec<u8>>, io::Take<ByteSource>>,
+    limit: ResourceLimit,
 }
 
 /// Opens a file, or standard input for `-`; `expected` describes it in messages.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, or of a form that is no text.
-pub fn open(path: &Path, expected: &str, limit: Limit) -> Result<Input> {
+pub fn open(path: &Path, expected: &str, limit: ResourceLimit) -> Result<Input> {
     let (input, head) = open_any(path, expected, limit)?;
     refuse_other_forms(path, expected, &head)?;
     Ok(input)
@@ -126,7 +130,7 @@ pub fn open(path: &Path, expected: &str, limit: Limit) -> Result<Input> {
 /// Refuses a file that is no text, by its name or its first bytes.
 pub fn refuse_other_forms(path: &Path, expected: &str, head: &[u8]) -> Result<()> {
     refuse_named(path, expected)?;
-    let begins = |it: &&Form| it.starts.iter().any(|start| head.starts_with(start));
+    let begins = |it: &&BinaryForm| it.starts.iter().any(|start| head.starts_with(start));
     FORMS.iter().find(begins).map_or(Ok(()), |form| Err(form.error(path, expected)))
 }
 
@@ -138,20 +142,20 @@ pub fn refuse_named(path: &Path, expected: &str) -> Result<()> {
 }
 
 /// Opens a file of any form, with its first bytes.
-pub fn open_any(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
-    headed(document::open(path, || opened(path, expected))?, path, expected, limit)
+pub fn open_any(path: &Path, expected: &str, limit: ResourceLimit) -> Result<(Input, Vec<u8>)> {
+    open_with_head(document::open(path, || open_source(path, expected))?, path, expected, limit)
 }
 
 /// Opens a file that is too large to be kept, with its first bytes.
-pub fn open_streamed(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
-    let source = document::stream(path, || opened(path, expected))?;
-    headed(source.map_err(|cause| unreadable(path, &cause, expected))?, path, expected, limit)
+pub fn open_streamed(path: &Path, expected: &str, limit: ResourceLimit) -> Result<(Input, Vec<u8>)> {
+    let source = document::stream(path, || open_source(path, expected))?;
+    open_with_head(source.map_err(|cause| unreadable_error(path, &cause, expected))?, path, expected, limit)
 }
 
 /// The bytes of a file, or of standard input.
-fn opened(path: &Path, expected: &str) -> Result<Source> {
+fn open_source(path: &Path, expected: &str) -> Result<ByteSource> {
     let error = |message: String| ErrorKind::File.error(message).in_file(path);
-    let disk = disk::here();
+    let disk = disk::current_disk();
     let opened = if is_standard_input(path) {
         disk.standard_input()
     } else if disk.follow(path).is_ok_and(|found| found.kind == ObjectKind::Folder) {
@@ -163,17 +167,25 @@ fn opened(path: &Path, expected: &str) -> Result<Source> {
         if cause.kind() == io::ErrorKind::NotFound {
             error(format!("found no such file, expected {expected}: check the path"))
         } else {
-            unreadable(path, &cause, expected)
+            unreadable_error(path, &cause, expected)
         }
     })
 }
 
 /// An input, with its first bytes.
-fn headed(mut rest: Source, path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
+fn open_with_head(
+    mut rest: ByteSource,
+    path: &Path,
+    expected: &str,
+    limit: ResourceLimit,
+) -> Result<(Input, Vec<u8>)> {
     let mut head = Vec::new();
-    rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;
+    rest.by_ref()
+        .take(HEAD)
+        .read_to_end(&mut head)
+        .map_err(|cause| unreadable_error(path, &cause, expected))?;
     // One byte beyond the limit shows that the file is too large.
-    let rest = rest.take((limit.most() + 1).saturating_sub(head.len() as u64));
+    let rest = rest.take((limit.value() + 1).saturating_sub(head.len() as u64));
     let input = Input { bytes: Cursor::new(head.clone()).chain(rest), limit };
     Ok((input, head))
 }
@@ -182,14 +194,14 @@ impl Input {
     /// Reads from `source`, up to the size of the largest table.
     #[must_use]
     pub fn from_reader(source: Box<dyn Read + Send>) -> Self {
-        let limit = Limit::Table;
-        Input { bytes: Cursor::default().chain(source.take(limit.most() + 1)), limit }
+        let limit = ResourceLimit::Table;
+        Input { bytes: Cursor::default().chain(source.take(limit.value() + 1)), limit }
     }
 }
 
 /// Message on an input beyond its limit.
-fn too_large(limit: Limit) -> String {
-    let (row, most) = (limit.row(), limit.most());
+fn too_large(limit: ResourceLimit) -> String {
+    let (row, most) = (limit.row(), limit.value());
     format!(
         "it is larger than {}: {}, or allow more by --limit {}=N",
         amount(most, row.unit),
@@ -204,7 +216,7 @@ pub fn is_standard_input(path: &Path) -> bool {
 }
 
 /// The error of a file that cannot be read; `expected` describes the kind of file.
-pub fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
+pub fn unreadable_error(path: &Path, error: &io::Error, expected: &str) -> Error {
     ErrorKind::File.error(format!("the file cannot be read ({error}), expected {expected}")).in_file(path)
 }
 
@@ -229,9 +241,9 @@ mod tests {
         let text = vec![b'a'; 1 << 10];
         std::fs::write(&path, &text).unwrap();
         let read = |largest| {
-            limits::on(limits::here().with(Limit::Text, largest), || {
+            limits::run_with_limits(limits::current_limits().with_limit(ResourceLimit::Text, largest), || {
                 let mut bytes = Vec::new();
-                open(&path, "a text", Limit::Text).unwrap().read_to_end(&mut bytes).map(|_| bytes)
+                open(&path, "a text", ResourceLimit::Text).unwrap().read_to_end(&mut bytes).map(|_| bytes)
             })
         };
         assert_eq!(read(1 << 10).unwrap(), text);
@@ -239,17 +251,17 @@ mod tests {
             let error = read(largest).unwrap_err().to_string();
             assert!(error.starts_with("it is larger than ") && error.ends_with("--limit text=N"), "{error}");
         }
-        for Form { starts, ends, words } in FORMS {
+        for BinaryForm { starts, ends, words } in FORMS {
             let expected = format!("found {words}, expected a text");
             for start in starts {
                 std::fs::write(&path, [start, &b"rest of it"[..]].concat()).unwrap();
-                let Err(error) = open(&path, "a text", Limit::Text) else { panic!("{start:?}") };
+                let Err(error) = open(&path, "a text", ResourceLimit::Text) else { panic!("{start:?}") };
                 assert!(error.to_string().ends_with(&expected), "{error}");
             }
             for end in ends {
                 let named = path.with_extension(end.to_uppercase());
                 std::fs::write(&named, "a text\n").unwrap();
-                let refused = open(&named, "a text", Limit::Text).map(|_| ());
+                let refused = open(&named, "a text", ResourceLimit::Text).map(|_| ());
                 std::fs::remove_file(&named).unwrap();
                 let error = refused.unwrap_err();
                 assert!(error.to_string().ends_with(&expected), "{error}");

@@ -3,7 +3,7 @@
 use std::io::Read as _;
 use std::path::Path;
 
-use super::limits::Limit;
+use super::limits::ResourceLimit;
 use super::source;
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -12,15 +12,15 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, too large, empty or not UTF-8.
 pub fn read(path: &Path, expected: &str) -> Result<String> {
-    read_up_to(path, expected, Limit::Text)
+    read_up_to(path, expected, ResourceLimit::Text)
 }
 
 /// [`read()`], with another limit.
-pub fn read_up_to(path: &Path, expected: &str, limit: Limit) -> Result<String> {
+pub fn read_up_to(path: &Path, expected: &str, limit: ResourceLimit) -> Result<String> {
     let mut bytes = Vec::new();
     source::open(path, expected, limit)?
         .read_to_end(&mut bytes)
-        .map_err(|error| source::unreadable(path, &error, expected))?;
+        .map_err(|error| source::unreadable_error(path, &error, expected))?;
     let text =
         String::from_utf8(bytes).or_else(|error| latin(error.as_bytes()).ok_or(error)).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
-use crate::limits::Limit;
+use crate::limits::ResourceLimit;
 use crate::numbers::LARGEST_NUMBER;
 use poecal_numerics::error::{Error, ErrorKind, Result, position};
 
@@ -39,7 +39,7 @@ fn crowded_element(text: &str) -> Option<usize> {
 
 /// Byte offset of the first element beyond the limit of nesting: code that walks through a document may take a stack frame for each level.
 fn deepest_element(text: &str) -> Option<usize> {
-    let (bytes, most) = (text.as_bytes(), Limit::Nesting.most_held());
+    let (bytes, most) = (text.as_bytes(), ResourceLimit::Nesting.most_held());
     let (mut at, mut depth) = (0, 0_usize);
     while let Some(open) = memchr::memchr(b'<', bytes.get(at..)?).map(|it| at + it) {
         let rest = text.get(open..)?;
@@ -76,9 +76,10 @@ fn deepest_element(text: &str) -> Option<usize> {
 
 /// A text whose prefixes are all declared. The colon of an undeclared prefix (`<sensor:camera>` in an old `<gazebo>`) is written as `_`. Such names
 /// are those of unknown elements, and all byte offsets are kept.
-pub fn readable(text: &str) -> Cow<'_, str> {
+pub fn declare_prefixes(text: &str) -> Cow<'_, str> {
     // A text that will be refused needs no list of its prefixes.
-    let colons = if is_beyond(text, Limit::Elements.most()) { Vec::new() } else { undeclared(text) };
+    let colons =
+        if is_beyond(text, ResourceLimit::Elements.value()) { Vec::new() } else { undeclared_prefixes(text) };
     if colons.is_empty() {
         return Cow::Borrowed(text);
     }
@@ -93,7 +94,7 @@ pub fn readable(text: &str) -> Cow<'_, str> {
 }
 
 /// Byte offsets of the colons behind prefixes of elements and attributes that no `xmlns:` of the text declares.
-fn undeclared(text: &str) -> Vec<usize> {
+fn undeclared_prefixes(text: &str) -> Vec<usize> {
     let bytes = text.as_bytes();
     let is_name = |byte: u8| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte) || byte >= 0x80;
     let (mut declared, mut used) = (BTreeSet::from(["xml", "xmlns"]), Vec::new());
@@ -158,15 +159,17 @@ pub fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document
     }
     if let Some(offset) = deepest_element(text) {
         return Err(ErrorKind::Syntax
-            .error(Limit::Nesting.exceeded("each other"))
+            .error(ResourceLimit::Nesting.exceeded_error("each other"))
             .at_offset(path, text, offset));
     }
-    if is_beyond(text, Limit::Elements.most()) {
-        return Err(ErrorKind::Syntax.error(Limit::Elements.exceeded("an XML file")).in_file(path));
+    if is_beyond(text, ResourceLimit::Elements.value()) {
+        return Err(ErrorKind::Syntax
+            .error(ResourceLimit::Elements.exceeded_error("an XML file"))
+            .in_file(path));
     }
-    let nodes_limit = u32::try_from(Limit::Elements.most()).unwrap_or(u32::MAX);
+    let nodes_limit = u32::try_from(ResourceLimit::Elements.value()).unwrap_or(u32::MAX);
     let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options).map_err(|error| broken(&error, path, expected))
+    Document::parse_with_options(text, options).map_err(|error| parser_error(&error, path, expected))
 }
 
 /// The name of the first element of a text; `None` if it does not begin as XML.
@@ -189,7 +192,7 @@ pub fn root_name(text: &str) -> Option<&str> {
 }
 
 /// The parser's message as one sentence with its position.
-fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
+fn parser_error(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     let place = error.pos();
     let (line, column) = (place.row as usize, place.col as usize);
     ErrorKind::Syntax.error(if let roxmltree::Error::UnknownNamespace(prefix, _) = error {
@@ -197,13 +200,13 @@ fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
             "found the prefix `{prefix}`, which is declared in another element alone, expected xmlns:{prefix}=\"…\" in the first element too"
         )
     } else if let roxmltree::Error::NodesLimitReached = error {
-        Limit::Elements.exceeded("an XML file")
+        ResourceLimit::Elements.exceeded_error("an XML file")
     } else if let roxmltree::Error::DtdDetected = error {
         format!("found a document type definition, expected {expected} without one")
     } else {
         let complaint = error.to_string().replace(&format!(" at {place}"), "");
         format!("found broken XML ({complaint}), expected {expected}")
-    }).at(path, line, column)
+    }).at_position(path, line, column)
 }
 
 /// A parsed XML text and the name of its file.
@@ -290,7 +293,12 @@ impl<'a> XmlSource<'a> {
     }
 
     /// A required attribute, not empty; `of` names its owner.
-    pub fn required(&self, node: Node<'a, 'a>, name: &str, of: &str) -> Result<(&'a str, Attribute<'a, 'a>)> {
+    pub fn require_attribute(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+        of: &str,
+    ) -> Result<(&'a str, Attribute<'a, 'a>)> {
         match node.attribute_node(name) {
             Some(attribute) if !attribute.value().trim().is_empty() => Ok((attribute.value(), attribute)),
             Some(attribute) => Err(self.error_at(
@@ -402,7 +410,7 @@ mod tests {
     #[test]
     fn prefixes_that_are_declared_nowhere_become_names_of_the_same_length() {
         let text = "<robot xmlns:a=\"u\"><a:b/><!-- <s:x/> --><s:camera t:size='s:1'>s:text</s:camera>\u{b5}</robot>";
-        let readable = readable(text);
+        let readable = declare_prefixes(text);
         assert_eq!(
             readable,
             text.replace("<s:camera", "<s_camera")
@@ -413,16 +421,18 @@ mod tests {
             parsed(&readable, Path::new("r"), "XML").is_ok() && parsed(text, Path::new("r"), "XML").is_err()
         );
         for broken in ["<a:", "<a b:c=\"", "<!-- <a:b>", "<a:b<c:d>", "", "<:a/>", "<a:/>"] {
-            assert_eq!(super::readable(broken).len(), broken.len());
+            assert_eq!(super::declare_prefixes(broken).len(), broken.len());
         }
     }
 
     #[test]
     fn texts_of_more_elements_than_there_may_be_are_refused_before_they_are_parsed() {
-        let few = limits::here().with(Limit::Elements, 10);
+        let few = limits::current_limits().with_limit(ResourceLimit::Elements, 10);
         let of = |inside: &str| {
             let text = format!("<r>{inside}</r>");
-            limits::on(few, || parsed(&readable(&text), Path::new("r"), "XML").map(|_| ()))
+            limits::run_with_limits(few, || {
+                parsed(&declare_prefixes(&text), Path::new("r"), "XML").map(|_| ())
+            })
         };
         assert!(of(&"<a b='1' c='2'/>".repeat(8)).is_ok());
         for beyond in ["<a/>".repeat(19), "<s:a/>".repeat(19), "<a/>".repeat(11), "= ".repeat(41)] {

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::numbers::LARGEST_NUMBER;
-use super::yaml_tree::{Node, NodeKind, documents, of_yaml};
+use super::yaml_tree::{NodeKind, YamlNode, documents, of_yaml};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// A value of a mapping.
 #[derive(Debug)]
-pub struct Value {
+pub struct YamlValue {
     /// The keys that lead to it.
     pub keys: Vec<String>,
     /// Its text; for a list, dots in brackets.
@@ -19,15 +19,15 @@ pub struct Value {
     column: usize,
 }
 
-impl Value {
-    fn new(keys: &[&str], node: &Node, text: &str, in_degrees: bool) -> Self {
+impl YamlValue {
+    fn new(keys: &[&str], node: &YamlNode, text: &str, in_degrees: bool) -> Self {
         let keys = keys.iter().map(|it| (*it).to_owned()).collect();
-        Value { keys, text: text.to_owned(), in_degrees, line: node.line, column: node.column }
+        YamlValue { keys, text: text.to_owned(), in_degrees, line: node.line, column: node.column }
     }
 
     /// An error at the value.
     pub fn error(&self, path: &Path, message: String) -> Error {
-        ErrorKind::Model.error(message).at(path, self.line, self.column)
+        ErrorKind::Model.error(message).at_position(path, self.line, self.column)
     }
 
     /// Its number.
@@ -48,10 +48,10 @@ impl Value {
 }
 
 /// The values of the mappings of a text, in its order; a list is one value, without its entries. `expected` describes the file in messages.
-pub fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
-    let refuse = |node: &Node, found: &str| {
+pub fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<YamlValue>> {
+    let refuse = |node: &YamlNode, found: &str| {
         let message = format!("found {found}, expected {expected}");
-        ErrorKind::Syntax.error(message).at(path, node.line, node.column)
+        ErrorKind::Syntax.error(message).at_position(path, node.line, node.column)
     };
     let documents = of_yaml(text, path, (0, expected))?;
     if let Some(second) = documents.get(1) {
@@ -69,18 +69,18 @@ pub fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
 
 /// Collects the values below a node with these keys; the flag is true if a list contains the node.
 fn values_of<'n>(
-    node: &'n Node,
+    node: &'n YamlNode,
     (keys, is_in_list): (&mut Vec<&'n str>, bool),
-    found: &mut Vec<Value>,
-) -> std::result::Result<(), (&'n Node, String)> {
+    found: &mut Vec<YamlValue>,
+) -> std::result::Result<(), (&'n YamlNode, String)> {
     match &node.kind {
         NodeKind::Text(text) => {
             let in_degrees = node.is_in_degrees().map_err(|words| (node, words))?;
-            found.push(Value::new(keys, node, text, in_degrees));
+            found.push(YamlValue::new(keys, node, text, in_degrees));
         }
         NodeKind::List(entries) => {
             if !is_in_list && !keys.is_empty() {
-                found.push(Value::new(keys, node, "[...]", false));
+                found.push(YamlValue::new(keys, node, "[...]", false));
             }
             for entry in entries.iter().filter(|it| it.text().is_none()) {
                 values_of(entry, (keys, true), found)?;
@@ -99,7 +99,7 @@ fn values_of<'n>(
 
 /// A number or word of a file with all the keys and list indices that lead to it.
 #[derive(Clone, Debug)]
-pub struct Leaf {
+pub struct YamlLeaf {
     /// Keys, and list indices.
     pub path: Vec<String>,
     /// Its text.
@@ -109,12 +109,12 @@ pub struct Leaf {
 }
 
 /// All numbers and words of a text, including entries of lists; tags are ignored.
-pub fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
+pub fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<YamlLeaf>> {
     Ok(trees(text, path, expected)?.concat())
 }
 
 /// The numbers and words of each document of YAML, or value of JSON.
-pub fn trees(text: &str, path: &Path, expected: &str) -> Result<Vec<Vec<Leaf>>> {
+pub fn trees(text: &str, path: &Path, expected: &str) -> Result<Vec<Vec<YamlLeaf>>> {
     let all = documents(text, path, expected)?;
     let trees = all.iter().map(|document| {
         let mut found = Vec::new();
@@ -124,10 +124,10 @@ pub fn trees(text: &str, path: &Path, expected: &str) -> Result<Vec<Vec<Leaf>>> 
     Ok(trees.collect())
 }
 
-fn leaves_of(node: &Node, steps: &mut Vec<String>, found: &mut Vec<Leaf>) {
+fn leaves_of(node: &YamlNode, steps: &mut Vec<String>, found: &mut Vec<YamlLeaf>) {
     match &node.kind {
         NodeKind::Text(text) => {
-            found.push(Leaf { path: steps.clone(), text: text.clone(), line: node.line });
+            found.push(YamlLeaf { path: steps.clone(), text: text.clone(), line: node.line });
         }
         NodeKind::List(entries) => {
             for (at, entry) in entries.iter().enumerate() {

@@ -8,14 +8,14 @@ use granit_parser::{Event, Parser, Span};
 use serde::de::IgnoredAny;
 
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 
 /// Largest depth of nested lists and mappings.
 const DEEPEST: usize = 64;
 
 /// A part of a document.
 #[derive(Debug)]
-pub struct Node {
+pub struct YamlNode {
     /// Kind and content of the part.
     pub kind: NodeKind,
     /// Line of its beginning, from 1.
@@ -32,14 +32,14 @@ pub enum NodeKind {
     /// A word or number.
     Text(String),
     /// A list.
-    List(Vec<Node>),
+    List(Vec<YamlNode>),
     /// Keys with their values.
-    Map(Vec<(String, Node)>),
+    Map(Vec<(String, YamlNode)>),
 }
 
-impl Node {
+impl YamlNode {
     /// The value of a key.
-    pub fn get(&self, key: &str) -> Option<&Node> {
+    pub fn get(&self, key: &str) -> Option<&YamlNode> {
         match &self.kind {
             NodeKind::Map(entries) => entries.iter().find(|(own, _)| own == key).map(|(_, node)| node),
             NodeKind::Text(_) | NodeKind::List(_) => None,
@@ -47,7 +47,7 @@ impl Node {
     }
 
     /// The entries of a list; `None` for anything else.
-    pub fn list(&self) -> Option<&[Node]> {
+    pub fn list(&self) -> Option<&[YamlNode]> {
         match &self.kind {
             NodeKind::List(entries) => Some(entries),
             NodeKind::Text(_) | NodeKind::Map(_) => None,
@@ -68,18 +68,18 @@ impl Node {
             // These are xacro's marks; others would mean other numbers.
             None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => Ok(false),
             Some(("!", "degrees")) => Ok(true),
-            Some((_, name)) => Err(format!("the unknown tag `!{}`", visible(name))),
+            Some((_, name)) => Err(format!("the unknown tag `!{}`", escape_invisible(name))),
         }
     }
 
     /// An error at its position.
     pub fn error(&self, path: &Path, message: impl Into<String>) -> Error {
-        Error::new(ErrorKind::Measurement, message).at(path, self.line, self.column)
+        Error::new(ErrorKind::Measurement, message).at_position(path, self.line, self.column)
     }
 }
 
 /// All documents of a text: YAML with `---` between them, or JSON, one value after the other. `expected` describes the file in messages.
-pub fn documents(text: &str, path: &Path, expected: &str) -> Result<Vec<Node>> {
+pub fn documents(text: &str, path: &Path, expected: &str) -> Result<Vec<YamlNode>> {
     let text = text.trim_start_matches('\u{feff}');
     match json_values(text, path, expected)? {
         Some(values) => {
@@ -107,7 +107,8 @@ fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<
             if !words.starts_with("{\"") && words != "[{\"" {
                 return Ok(None);
             }
-            let message = format!("found broken JSON ({}), expected {expected}", visible(&error.to_string()));
+            let message =
+                format!("found broken JSON ({}), expected {expected}", escape_invisible(&error.to_string()));
             return Err(Error::new(ErrorKind::Syntax, message).at_line(path, error.line()));
         }
         let piece = rest.get(..values.byte_offset() - start).unwrap_or_default();
@@ -118,7 +119,7 @@ fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<
     Ok(Some(found))
 }
 
-impl Open {
+impl OpenNode {
     /// True if a key comes next.
     fn wants_key(&self) -> bool {
         matches!(self.node.kind, NodeKind::Map(_)) && self.key.is_none()
@@ -126,8 +127,8 @@ impl Open {
 }
 
 /// A list or mapping that is still open.
-struct Open {
-    node: Node,
+struct OpenNode {
+    node: YamlNode,
     /// The key whose value comes next.
     key: Option<String>,
     /// All keys of the mapping.
@@ -141,39 +142,39 @@ fn without_directive(text: &str) -> Cow<'_, str> {
 }
 
 /// The documents of YAML, with `before` lines above it.
-pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<Node>> {
+pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<YamlNode>> {
     let refuse = |span: &Span, found: &str| {
         let message = format!("found {found}, expected {expected}");
         let (line, column) = (before + span.start.line(), span.start.col() + 1);
-        Err(Error::new(ErrorKind::Syntax, message).at(path, line, column))
+        Err(Error::new(ErrorKind::Syntax, message).at_position(path, line, column))
     };
-    let (mut open, mut found): (Vec<Open>, Vec<Node>) = (Vec::new(), Vec::new());
+    let (mut open, mut found): (Vec<OpenNode>, Vec<YamlNode>) = (Vec::new(), Vec::new());
     let text = without_directive(text);
     for event in Parser::new_from_str(&text) {
         let (event, span) = event.map_err(|error| {
-            let (place, message) = (error.marker(), visible(&error.info()).into_owned());
+            let (place, message) = (error.marker(), escape_invisible(&error.info()).into_owned());
             let message = format!("found broken YAML ({message}), expected {expected}");
-            Error::new(ErrorKind::Syntax, message).at(path, before + place.line(), place.col() + 1)
+            Error::new(ErrorKind::Syntax, message).at_position(path, before + place.line(), place.col() + 1)
         })?;
         let node = |kind: NodeKind| {
             let (line, column) = (before + span.start.line(), span.start.col() + 1);
-            Node { kind, line, column, tag: None }
+            YamlNode { kind, line, column, tag: None }
         };
         match event {
             Event::Scalar(text, _, _, tag) => match open.last_mut() {
-                Some(Open { node: Node { kind: NodeKind::Map(_), .. }, key: key @ None, seen }) => {
+                Some(OpenNode { node: YamlNode { kind: NodeKind::Map(_), .. }, key: key @ None, seen }) => {
                     if !seen.insert(text.to_string()) {
-                        return refuse(&span, &format!("the key `{}` twice", visible(&text)));
+                        return refuse(&span, &format!("the key `{}` twice", escape_invisible(&text)));
                     }
                     *key = Some(text.to_string());
                 }
                 _ => {
                     let tag = tag.map(|it| Box::new((it.handle().to_owned(), it.suffix().to_owned())));
-                    close(Node { tag, ..node(NodeKind::Text(text.to_string())) }, &mut open, &mut found);
+                    close(YamlNode { tag, ..node(NodeKind::Text(text.to_string())) }, &mut open, &mut found);
                 }
             },
             Event::MappingStart(..) | Event::SequenceStart(..) => {
-                if open.last().is_some_and(Open::wants_key) {
+                if open.last().is_some_and(OpenNode::wants_key) {
                     return refuse(&span, "a key that is no text");
                 }
                 if open.len() > DEEPEST {
@@ -181,10 +182,10 @@ pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)
                 }
                 let is_map = matches!(event, Event::MappingStart(..));
                 let kind = if is_map { NodeKind::Map(Vec::new()) } else { NodeKind::List(Vec::new()) };
-                open.push(Open { node: node(kind), key: None, seen: BTreeSet::new() });
+                open.push(OpenNode { node: node(kind), key: None, seen: BTreeSet::new() });
             }
             Event::MappingEnd | Event::SequenceEnd => {
-                if let Some(Open { node, .. }) = open.pop() {
+                if let Some(OpenNode { node, .. }) = open.pop() {
                     close(node, &mut open, &mut found);
                 }
             }
@@ -203,10 +204,10 @@ pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)
 }
 
 /// Adds a part that has ended to its parent, or to the documents.
-fn close(node: Node, open: &mut [Open], found: &mut Vec<Node>) {
+fn close(node: YamlNode, open: &mut [OpenNode], found: &mut Vec<YamlNode>) {
     match open.last_mut() {
         None => found.push(node),
-        Some(Open { node: outer, key, .. }) => match &mut outer.kind {
+        Some(OpenNode { node: outer, key, .. }) => match &mut outer.kind {
             NodeKind::List(entries) => entries.push(node),
             NodeKind::Map(entries) => entries.extend(key.take().map(|key| (key, node))),
             NodeKind::Text(_) => {}
@@ -218,7 +219,7 @@ fn close(node: Node, open: &mut [Open], found: &mut Vec<Node>) {
 mod tests {
     use super::*;
 
-    fn nodes_of_text(text: &str) -> Vec<Node> {
+    fn nodes_of_text(text: &str) -> Vec<YamlNode> {
         documents(text, Path::new("x"), "a message").unwrap()
     }
 
@@ -232,7 +233,7 @@ mod tests {
             let found = nodes_of_text(text);
             let list = |at: usize| found[at].get("a").unwrap().get("b").unwrap().list().unwrap();
             assert_eq!(list(0)[1].text(), Some("2.5"), "{text}");
-            assert_eq!(found[0].get("c").and_then(Node::text), Some("d"));
+            assert_eq!(found[0].get("c").and_then(YamlNode::text), Some("d"));
             assert!(list(1).is_empty());
         }
         assert_eq!(nodes_of_text("{\"a\":1}\n\n{\"a\":[2]}")[1].get("a").map(|it| it.line), Some(3));

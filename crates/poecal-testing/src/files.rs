@@ -33,7 +33,7 @@ impl Folder {
     }
 
     /// The folder itself.
-    pub fn here(&self) -> &Path {
+    pub fn root_path(&self) -> &Path {
         &self.0
     }
 

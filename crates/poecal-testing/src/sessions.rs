@@ -6,18 +6,18 @@ use poecal_arm::lie::{Pose, Screw, Twist};
 use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, calibrate};
 #[cfg(feature = "calibrate")]
 use poecal_model::measurement::Dataset;
-use poecal_model::robot::{Joint, Limits, Robot};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random};
+use poecal_model::robot::{Joint, JointLimits, Robot};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, random};
 use rand_chacha::ChaCha8Rng;
 
 /// A usual session of a robot.
-pub fn simulated(robot: &Robot, kind: Kind, count: usize, seed: u64) -> Simulated {
+pub fn simulate_session(robot: &Robot, kind: SessionKind, count: usize, seed: u64) -> SimulationResult {
     Simulation { count, seed, ..Simulation::default() }.run(robot, kind).unwrap()
 }
 
 /// A calibration with default options.
 #[cfg(feature = "calibrate")]
-pub fn calibrated(robot: &Robot, data: &Dataset) -> Calibration {
+pub fn calibrate_session(robot: &Robot, data: &Dataset) -> Calibration {
     calibrate(robot, data, &geometry()).unwrap()
 }
 
@@ -41,8 +41,8 @@ pub fn lifting_robot() -> Robot {
     let lift = Joint::prismatic("lift", Screw::prismatic(&z));
     let b = Joint::revolute("b", Screw::revolute(&z, &Vector3::new(0.5, 0.0, 0.0)));
     let joints = vec![
-        Joint { limits: Some(Limits { lower: -3.15, upper: 3.15 }), ..a },
-        Joint { limits: Some(Limits { lower: 0.0, upper: 0.5 }), ..lift },
+        Joint { limits: Some(JointLimits { lower: -3.15, upper: 3.15 }), ..a },
+        Joint { limits: Some(JointLimits { lower: 0.0, upper: 0.5 }), ..lift },
         b,
     ];
     Robot::new("test", joints, Pose::from_translation(Vector3::new(1.0, 0.0, 0.3))).unwrap()

@@ -12,7 +12,7 @@ pub struct Trials {
 /// The fewest meaningful trials.
 const FEWEST: usize = 2;
 /// Part of the weekly number for every change. The scatter of a mean is 3.5 times as large, and its tolerance grows by three of the added standard
-/// errors ([`Trials::more`]): a fault shows if it is 3.5 times as large as the smallest that the weekly number shows.
+/// errors ([`Trials::tolerance_factor`]): a fault shows if it is 3.5 times as large as the smallest that the weekly number shows.
 const OF_A_CHANGE: usize = 12;
 /// The same part for `quick`.
 const OF_A_QUICK_LOOK: usize = 20;
@@ -34,7 +34,7 @@ pub fn trials(weekly: usize) -> Trials {
 }
 
 /// Selection of independent cases that are no trials: all, or with `quick` every fifth.
-pub fn some<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+pub fn choose_some<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
     let is_quick = std::env::var("POECAL_TRIALS").is_ok_and(|said| said == "quick");
     all.into_iter().step_by(if is_quick { 5 } else { 1 }).collect()
 }
@@ -52,13 +52,13 @@ impl Trials {
 
     /// Increase of the tolerance of a mean over the trials: three standard errors, less those of the weekly number. Zero for the weekly number and
     /// more. `sigma` is the standard deviation of one trial.
-    pub fn more(self, sigma: f64) -> f64 {
+    pub fn tolerance_factor(self, sigma: f64) -> f64 {
         let root = |count: usize| (count as f64).sqrt();
         3.0 * sigma * (1.0 / root(self.count) - 1.0 / root(self.weekly)).max(0.0)
     }
 
     /// Increase of the tolerance of a share of the trials.
     pub fn more_of_a_share(self, share: f64) -> f64 {
-        self.more((share * (1.0 - share)).sqrt())
+        self.tolerance_factor((share * (1.0 - share)).sqrt())
     }
 }

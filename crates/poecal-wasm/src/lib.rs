@@ -17,15 +17,15 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
 
-use poecal_cli::{Said, run_captured};
-use poecal_storage::disk::on;
+use poecal_cli::{CapturedOutput, run_captured};
+use poecal_storage::disk::run_on_disk;
 
 pub use disk::MemoryDisk;
 pub use message::{decode, encode};
 
 /// A requested run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Request {
+pub struct RunRequest {
     /// The words after the program's name.
     pub words: Vec<String>,
     /// Input of `-`; an empty text if none is supplied.
@@ -38,8 +38,8 @@ pub struct Request {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Answer {
     /// Exit code, standard output and standard error.
-    pub said: Said,
-    /// Files written by the run, new or in place of others, by paths as in [`Request::files`].
+    pub said: CapturedOutput,
+    /// Files written by the run, new or in place of others, by paths as in [`RunRequest::files`].
     pub written: BTreeMap<String, Vec<u8>>,
     /// Files that existed before and were removed.
     pub removed: Vec<String>,
@@ -47,18 +47,21 @@ pub struct Answer {
 
 /// Runs the program on a disk of its own.
 #[must_use]
-pub fn run(request: Request) -> Answer {
+pub fn run(request: RunRequest) -> Answer {
     let disk = MemoryDisk::new(request.input);
     for (path, bytes) in request.files {
         if let Err(error) = disk.put(Path::new(&path), bytes) {
             let err = format!(
                 "error: {path}: the file cannot be put on the disk ({error}), expected a path of its own\n"
             );
-            return Answer { said: Said { code: 2, err, ..Said::default() }, ..Answer::default() };
+            return Answer {
+                said: CapturedOutput { code: 2, err, ..CapturedOutput::default() },
+                ..Answer::default()
+            };
         }
     }
     let words = std::iter::once("poecal".to_owned()).chain(request.words).map(OsString::from);
-    let said = on(Arc::new(disk.clone()), || run_captured(words));
+    let said = run_on_disk(Arc::new(disk.clone()), || run_captured(words));
     let (written, removed) = disk.changes();
     Answer { said, written, removed }
 }

@@ -4,12 +4,12 @@
 //! list of words, the input, and the list of files, each a path and its bytes. An answer is the exit code, standard output, standard
 //! error, the list of files written, and the list of those removed.
 
-use crate::{Answer, Request};
+use crate::{Answer, RunRequest};
 
 /// Rest that is not read yet.
-struct Rest<'a>(&'a [u8]);
+struct RemainingBytes<'a>(&'a [u8]);
 
-impl<'a> Rest<'a> {
+impl<'a> RemainingBytes<'a> {
     fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
         let (first, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
@@ -33,9 +33,9 @@ impl<'a> Rest<'a> {
 
 /// The request in these bytes; `None` if they contain none.
 #[must_use]
-pub fn decode(bytes: &[u8]) -> Option<Request> {
-    let mut rest = Rest(bytes);
-    let mut request = Request::default();
+pub fn decode(bytes: &[u8]) -> Option<RunRequest> {
+    let mut rest = RemainingBytes(bytes);
+    let mut request = RunRequest::default();
     for _ in 0..rest.number()? {
         request.words.push(rest.text()?);
     }

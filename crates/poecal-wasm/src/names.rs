@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// Item of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Node {
+pub(crate) enum PathEntry {
     Folder,
     /// The file of this number.
     File(usize),
@@ -15,10 +15,10 @@ pub(crate) enum Node {
 
 /// All names, by their paths from the root.
 #[derive(Debug)]
-pub(crate) struct Names(BTreeMap<PathBuf, Node>);
+pub(crate) struct PathNames(BTreeMap<PathBuf, PathEntry>);
 
 /// A path from the root, without `.` and `..`; the current folder is the root.
-pub(crate) fn whole(path: &Path) -> PathBuf {
+pub(crate) fn whole_path(path: &Path) -> PathBuf {
     let mut out = PathBuf::from("/");
     for part in path.components() {
         match part {
@@ -30,57 +30,57 @@ pub(crate) fn whole(path: &Path) -> PathBuf {
     out
 }
 
-impl Names {
+impl PathNames {
     /// The root alone.
     pub(crate) fn new() -> Self {
-        Names(BTreeMap::from([(PathBuf::from("/"), Node::Folder)]))
+        PathNames(BTreeMap::from([(PathBuf::from("/"), PathEntry::Folder)]))
     }
 
-    pub(crate) fn all(&self) -> impl Iterator<Item = (&Path, Node)> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&Path, PathEntry)> {
         self.0.iter().map(|(path, node)| (path.as_path(), *node))
     }
 
     /// The item at a whole path.
-    pub(crate) fn at(&self, path: &Path) -> io::Result<Node> {
+    pub(crate) fn entry_at(&self, path: &Path) -> io::Result<PathEntry> {
         if let Some(node) = self.0.get(path) {
             return Ok(*node);
         }
         // A file within the path is another mistake than a missing name.
         let is_through_file =
-            path.ancestors().skip(1).any(|above| matches!(self.0.get(above), Some(Node::File(_))));
+            path.ancestors().skip(1).any(|above| matches!(self.0.get(above), Some(PathEntry::File(_))));
         Err(if is_through_file { ErrorKind::NotADirectory } else { ErrorKind::NotFound }.into())
     }
 
     pub(crate) fn folder(&self, path: &Path) -> io::Result<()> {
-        match self.at(path)? {
-            Node::Folder => Ok(()),
-            Node::File(_) => Err(ErrorKind::NotADirectory.into()),
+        match self.entry_at(path)? {
+            PathEntry::Folder => Ok(()),
+            PathEntry::File(_) => Err(ErrorKind::NotADirectory.into()),
         }
     }
 
     pub(crate) fn file(&self, path: &Path) -> io::Result<usize> {
-        match self.at(path)? {
-            Node::File(number) => Ok(number),
-            Node::Folder => Err(ErrorKind::IsADirectory.into()),
+        match self.entry_at(path)? {
+            PathEntry::File(number) => Ok(number),
+            PathEntry::Folder => Err(ErrorKind::IsADirectory.into()),
         }
     }
 
     /// Everything below a folder.
-    fn below(&self, folder: &Path) -> impl Iterator<Item = (&PathBuf, &Node)> {
+    fn entries_below(&self, folder: &Path) -> impl Iterator<Item = (&PathBuf, &PathEntry)> {
         let all = self.0.range::<Path, _>((Bound::Excluded(folder), Bound::Unbounded));
         all.take_while(move |(path, _)| path.starts_with(folder))
     }
 
     /// Names in a folder, sorted.
     pub(crate) fn children(&self, folder: &Path) -> Vec<&Path> {
-        self.below(folder)
+        self.entries_below(folder)
             .filter(|(path, _)| path.parent() == Some(folder))
             .map(|(path, _)| path.as_path())
             .collect()
     }
 
     /// Adds a new name, if it is free and its folder exists.
-    pub(crate) fn add(&mut self, path: PathBuf, node: Node) -> io::Result<()> {
+    pub(crate) fn add(&mut self, path: PathBuf, node: PathEntry) -> io::Result<()> {
         if self.0.contains_key(&path) {
             return Err(ErrorKind::AlreadyExists.into());
         }
@@ -95,13 +95,15 @@ impl Names {
 
     /// Moves a file, or a folder with its content, to a free name, or a file onto a file.
     pub(crate) fn rename(&mut self, from: &Path, to: &Path, replaces: bool) -> io::Result<()> {
-        let node = self.at(from)?;
+        let node = self.entry_at(from)?;
         self.folder(to.parent().unwrap_or(Path::new("/")))?;
         match (node, self.0.get(to)) {
             (_, Some(_)) if !replaces => return Err(ErrorKind::AlreadyExists.into()),
-            (Node::File(_), Some(Node::Folder)) => return Err(ErrorKind::IsADirectory.into()),
-            (Node::Folder, Some(Node::File(_))) => return Err(ErrorKind::NotADirectory.into()),
-            (Node::Folder, Some(Node::Folder)) if from != to && self.below(to).next().is_some() => {
+            (PathEntry::File(_), Some(PathEntry::Folder)) => return Err(ErrorKind::IsADirectory.into()),
+            (PathEntry::Folder, Some(PathEntry::File(_))) => return Err(ErrorKind::NotADirectory.into()),
+            (PathEntry::Folder, Some(PathEntry::Folder))
+                if from != to && self.entries_below(to).next().is_some() =>
+            {
                 return Err(ErrorKind::DirectoryNotEmpty.into());
             }
             _ => {}
@@ -109,8 +111,8 @@ impl Names {
         if to != from && to.starts_with(from) {
             return Err(ErrorKind::InvalidInput.into());
         }
-        for (path, node) in self.taken(from) {
-            self.0.insert(moved(&path, from, to), node);
+        for (path, node) in self.take_below(from) {
+            self.0.insert(move_path(&path, from, to), node);
         }
         Ok(())
     }
@@ -122,26 +124,26 @@ impl Names {
         if one != other && (one.starts_with(other) || other.starts_with(one)) {
             return Err(ErrorKind::InvalidInput.into());
         }
-        let (first, second) = (self.taken(one), self.taken(other));
+        let (first, second) = (self.take_below(one), self.take_below(other));
         for (path, node) in first {
-            self.0.insert(moved(&path, one, other), node);
+            self.0.insert(move_path(&path, one, other), node);
         }
         for (path, node) in second {
-            self.0.insert(moved(&path, other, one), node);
+            self.0.insert(move_path(&path, other, one), node);
         }
         Ok(())
     }
 
     /// Removes a name, and all below it, from the tree.
-    fn taken(&mut self, path: &Path) -> Vec<(PathBuf, Node)> {
-        let mut paths: Vec<PathBuf> = self.below(path).map(|(path, _)| path.clone()).collect();
+    fn take_below(&mut self, path: &Path) -> Vec<(PathBuf, PathEntry)> {
+        let mut paths: Vec<PathBuf> = self.entries_below(path).map(|(path, _)| path.clone()).collect();
         paths.push(path.to_owned());
         paths.into_iter().filter_map(|path| self.0.remove_entry(&path)).collect()
     }
 }
 
 /// A path below `from` moved below `to`.
-fn moved(path: &Path, from: &Path, to: &Path) -> PathBuf {
+fn move_path(path: &Path, from: &Path, to: &Path) -> PathBuf {
     match path.strip_prefix(from) {
         // Joined with an empty path, a path would end in a separator.
         Ok(rest) if rest.as_os_str().is_empty() => to.to_owned(),

@@ -11,11 +11,11 @@ use cpu_time::ProcessTime;
 use nalgebra::DVector;
 use poecal_arm::lie::Pose;
 use poecal_fit::parameters::{DeviceFrame, Parameter, TargetFrame, screw_axes};
-use poecal_fit::problem::{Bundle, Bundled};
-use poecal_fit::state::{Estimate, Packed, Session};
+use poecal_fit::problem::{Bundle, BundleOptimum};
+use poecal_fit::state::{Estimate, PackedValues, Session};
 use poecal_model::camera::{Board, CommonError, Distortion, Lens, PictureUnknown, PictureUnknowns};
 use poecal_model::robot::{JointKind, Robot};
-use poecal_model::simulate::{Photographed, PictureSimulation, Simulation, random_chain};
+use poecal_model::simulate::{PictureSimulation, SimulatedPictures, Simulation, random_chain};
 
 /// Seconds for which fits are repeated.
 const LONG_ENOUGH: f64 = 0.5;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let robot = (1..100).map(|seed| random_chain(7, seed)).find(turns).ok_or("found no arm")?;
     let made = session(&robot, pictures.parse()?, is_free)?;
     let start = start(&robot, &made);
-    let packed = Packed::from_dataset(&robot, &made.data);
+    let packed = PackedValues::from_dataset(&robot, &made.data);
     let session = Session::new(&robot, &made.data, &packed, true);
     let rows = made.data.all_rows();
     let both = [PictureUnknown::Lens(0), PictureUnknown::Markers(0)];
@@ -43,8 +43,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         PictureUnknowns::new(&pictures.cameras, &pictures.boards, if is_free { &both } else { &[] });
     let count = unknowns.count();
     std::fs::write(path, problem(&robot, &made, &start, &unknowns))?;
-    let fit = || -> Option<Bundled> {
-        let free = free(&start);
+    let fit = || -> Option<BundleOptimum> {
+        let free = free_parameters(&start);
         let bundle = Bundle::new(session, &rows, free, unknowns.clone())?;
         Some(bundle.with_common(CommonError::NONE).solve(&start, &DVector::zeros(count)))
     };
@@ -56,15 +56,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         times.push(begin.elapsed().as_secs_f64() * 1e3);
     }
     times.sort_unstable_by(f64::total_cmp);
-    let Bundled { cost, passes, .. } = found.ok_or("found no bundle")?;
+    let BundleOptimum { cost, passes, .. } = found.ok_or("found no bundle")?;
     println!("{{\"cpu_ms\": {}, \"passes\": {passes}, \"cost\": {cost}}}", times[times.len() / 2]);
     Ok(())
 }
 
-fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error::Result<Photographed> {
+fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error::Result<SimulatedPictures> {
     let session =
         Simulation { count, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
-    let usual = PictureSimulation::usual(session, true);
+    let usual = PictureSimulation::with_usual_camera(session, true);
     let lens = Lens { distortion: Distortion::Brown(DISTORTION), ..usual.lens };
     let board = Board::chessboard("board", [9, 6], 0.03).unwrap_or_default();
     let mut made = PictureSimulation { lens, board, ..usual }.run(robot)?;
@@ -82,14 +82,14 @@ fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error
 }
 
 /// The nominal arm with camera and board displaced by some millimetres.
-fn start(robot: &Robot, made: &Photographed) -> Estimate {
+fn start(robot: &Robot, made: &SimulatedPictures) -> Estimate {
     let off = Pose::from_xyz_rpy([2e-3, -1e-3, 1e-3], [2e-3, 1e-3, -2e-3]);
     let camera = robot.home * made.tip_from_held * off;
     Estimate::new(robot, vec![camera], made.base_from_other.inverse() * off)
 }
 
 /// All unknowns: camera, board and axes.
-fn free(start: &Estimate) -> Vec<Parameter> {
+fn free_parameters(start: &Estimate) -> Vec<Parameter> {
     let frames = [
         Parameter::DeviceFrame(DeviceFrame::new(0, start.device_from_base.translation)),
         Parameter::TargetFrame(TargetFrame::new(0)),
@@ -99,7 +99,7 @@ fn free(start: &Estimate) -> Vec<Parameter> {
 
 /// Input of the other program, as plain numbers: axes at zero (two directions across it, direction, point), `board_from_base` and `base_from_camera`,
 /// lens with its priors (0 if known), points with their prior, noise, and readings and pixels of each picture.
-fn problem(robot: &Robot, made: &Photographed, start: &Estimate, numbers: &PictureUnknowns) -> String {
+fn problem(robot: &Robot, made: &SimulatedPictures, start: &Estimate, numbers: &PictureUnknowns) -> String {
     let data = &made.data;
     let (lens, board) = (&data.pictures.cameras[0].lens, &data.pictures.boards[0]);
     let mut text = String::new();

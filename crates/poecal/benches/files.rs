@@ -9,7 +9,7 @@ use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use poecal_calibrate::{CalibrationOptions, calibrate};
 use poecal_import::{ReadOptions, read};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow};
 use poecal_results::residuals::{ResidualRows, Residuals};
 
 fn main() {
@@ -18,13 +18,13 @@ fn main() {
 
 const ROWS: usize = 50_000;
 
-fn session() -> Simulated {
+fn session() -> SimulationResult {
     let simulation = Simulation { count: ROWS, device_anywhere: false, ..Simulation::default() };
-    simulation.run(&elbow(), Kind::POSE).expect("a simulation of a finite robot")
+    simulation.run(&elbow(), SessionKind::POSE).expect("a simulation of a finite robot")
 }
 
 /// The rows as a file of the project's form, every number with this number of decimals, or else to its last digit.
-fn table(made: &Simulated, decimals: Option<usize>) -> String {
+fn table(made: &SimulationResult, decimals: Option<usize>) -> String {
     let mut text = made.data.reading_names().join(",") + ",x,y,z,qx,qy,qz,qw\n";
     for (row, observation) in made.data.observations.iter().enumerate() {
         let pose = observation.measurement.pose();

@@ -11,7 +11,7 @@ use std::time::Instant;
 use nalgebra::Vector3;
 use poecal_compensate::Kinematics;
 use poecal_model::robot::Robot;
-use poecal_model::robot::{Gives, Gravity, JointTerm, Term, TermKind};
+use poecal_model::robot::{CompliantDirections, Gravity, JointTerm, Term, TermKind};
 use poecal_model::simulate;
 
 const ROWS: usize = 4096;
@@ -51,17 +51,17 @@ fn main() -> Result<(), poecal_numerics::error::Error> {
 
 /// Sizes of harmonics, couplings and sag of every joint and link of the elbow.
 fn with_terms() -> Robot {
-    let (mut robot, _) = simulate::elbow().giving(&[0, 1, 2, 3, 4, 5], Gives::All);
+    let (mut robot, _) = simulate::elbow().with_compliance(&[0, 1, 2, 3, 4, 5], CompliantDirections::All);
     robot.gravity = Some(Gravity::of_unit_weights(&robot, -Vector3::z()));
     let weights = robot.gravity.as_ref().map_or(0, |it| it.weights.len());
     for joint in 0..robot.joints.len() {
-        let mut terms: Vec<Term> = (0..weights).map(|weight| TermKind::Sag.at(weight)).collect();
+        let mut terms: Vec<Term> = (0..weights).map(|weight| TermKind::Sag.with_index(weight)).collect();
         if robot.joints[joint].give_of.is_none() {
-            terms.extend([Term::OFFSET, Term::RATIO, TermKind::Coupled.at((joint + 1) % 6)]);
+            terms.extend([Term::OFFSET, Term::RATIO, TermKind::Coupled.with_index((joint + 1) % 6)]);
             terms.extend(
-                [1, 2]
-                    .iter()
-                    .flat_map(|&order| [TermKind::Sine, TermKind::Cosine].map(|kind| kind.numbered(order))),
+                [1, 2].iter().flat_map(|&order| {
+                    [TermKind::Sine, TermKind::Cosine].map(|kind| kind.with_number(order))
+                }),
             );
         }
         robot.terms.extend(terms.into_iter().map(|term| JointTerm { joint, term, coefficient: 3e-4 }));

@@ -10,10 +10,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use poecal_calibrate::delivered;
+use poecal_calibrate::nominal_estimate;
 use poecal_fit::parameters::{Parameter, TargetFrame, screw_axes};
 use poecal_fit::problem::{Problem, Refit};
-use poecal_fit::state::{Estimate, Packed, Session};
+use poecal_fit::state::{Estimate, PackedValues, Session};
 use poecal_import as measurements;
 use poecal_import::ReadOptions;
 use poecal_model::measurement::{Dataset, Measurement};
@@ -23,7 +23,7 @@ use poecal_numerics::solve::{Options, minimize};
 use poecal_results::model::Model;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
-use trials::{NOISE, disturbed};
+use trials::{NOISE, disturb_measurements};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with("--")).collect();
@@ -35,14 +35,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [exact, held_out] = [read(exact, &robot)?, read(held_out, &robot)?];
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let trials: Vec<Vec<Measurement>> =
-        (0..fits.parse()?).map(|_| disturbed(&exact, &mut generator)).collect();
+        (0..fits.parse()?).map(|_| disturb_measurements(&exact, &mut generator)).collect();
 
     let (begin, wall) = (ProcessTime::now(), Instant::now());
     let found = fit_all(&robot, &exact, &trials);
     let [cpu_ms, wall_ms] = [begin.elapsed(), wall.elapsed()].map(|time| time.as_secs_f64() * 1e3);
 
     let iterations: usize = found.iter().map(|(_, iterations)| iterations).sum();
-    let packed = Packed::from_dataset(&robot, &held_out);
+    let packed = PackedValues::from_dataset(&robot, &held_out);
     let session = Session::new(&robot, &held_out, &packed, false);
     let rows = held_out.all_rows();
     let squares: f64 = found
@@ -68,8 +68,8 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     let Some(first) = trials.first() else { return Vec::new() };
     let mut begun = data.clone();
     begun.observations.iter_mut().zip(first).for_each(|(row, seen)| row.measurement = *seen);
-    let start = delivered(robot, &begun);
-    let packed = Packed::from_dataset(robot, &begun);
+    let start = nominal_estimate(robot, &begun);
+    let packed = PackedValues::from_dataset(robot, &begun);
     let mut free = screw_axes(start.kinds());
     free.push(Parameter::TargetFrame(TargetFrame::new(0)));
     let session = Session::new(robot, &begun, &packed, false).with_length(robot.reach_m() / 3.0);

@@ -19,14 +19,14 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use poecal::{CalibrationOptions, Kind, Model, Quantity, Simulation, calibrate};
+use poecal::{CalibrationOptions, Model, Quantity, SessionKind, Simulation, calibrate};
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::read(ELBOW, &Default::default())?;
     let simulation = Simulation { count: 50, seed: 1, ..Simulation::default() };
-    let made = simulation.run(&model.robot, Kind::POSE)?;
+    let made = simulation.run(&model.robot, SessionKind::POSE)?;
 
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
     let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;

@@ -20,8 +20,8 @@
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use poecal::{
-    CalibrationFile, CalibrationOptions, Inputs, Kind, Model, ModelSource, PredictionFrame, Simulation,
-    calibrate, predicted,
+    CalibrationFile, CalibrationOptions, Inputs, Model, ModelSource, PredictionFrame, SessionKind,
+    Simulation, calibrate, predict_readings,
 };
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
@@ -29,19 +29,19 @@ const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/r
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let nominal = Model::read(ELBOW, &Default::default())?.robot;
     let simulation = Simulation { count: 50, seed: 3, ..Simulation::default() };
-    let made = simulation.run(&nominal, Kind::POSE)?;
-    let truth = simulation.held_out(&made, Kind::POSE, 1000)?;
+    let made = simulation.run(&nominal, SessionKind::POSE)?;
+    let truth = simulation.held_out(&made, SessionKind::POSE, 1000)?;
     let calibration = calibrate(&nominal, &made.data, &CalibrationOptions::default())?;
 
     // The calibration in the form of its file: robot, device and covariance, those of the corrected model.
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-    let file = file.corrected().unwrap_or(file);
+    let file = file.corrected_file().unwrap_or(file);
     let model = Model {
         robot: file.robot()?,
         source: ModelSource::Calibration(Box::new(file)),
         path: "calibration.json".into(),
     };
-    let found = predicted(&model, truth.all_readings(), PredictionFrame::Device, None, true)?;
+    let found = predict_readings(&model, truth.all_readings(), PredictionFrame::Device, None, true)?;
     let doubts = found.doubts.ok_or("a calibration has expected errors")?;
 
     let seen = truth.observations.iter().map(|row| row.measurement.pose().translation);

@@ -19,7 +19,8 @@
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use poecal::{
-    CalibrationFile, CalibrationOptions, Inputs, Kind, Model, PlannedSession, Simulation, calibrate, identify,
+    CalibrationFile, CalibrationOptions, Inputs, Model, PlannedSession, SessionKind, Simulation, calibrate,
+    identify,
 };
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
@@ -27,10 +28,10 @@ const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/r
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let nominal = Model::read(ELBOW, &Default::default())?.robot;
     let simulation = Simulation { count: 40, seed: 5, ..Simulation::default() };
-    let made = simulation.run(&nominal, Kind::POINT)?;
-    let others = simulation.held_out(&made, Kind::POINT, 200)?;
+    let made = simulation.run(&nominal, SessionKind::POINT)?;
+    let others = simulation.held_out(&made, SessionKind::POINT, 200)?;
 
-    let session = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
+    let session = PlannedSession { kind: SessionKind::POINT, ..PlannedSession::default() };
     for count in [8, 40] {
         let readings: Vec<f64> = (0..count).flat_map(|row| made.data.readings(row).to_vec()).collect();
         let found = identify(&nominal, &readings, &session)?;

@@ -14,10 +14,10 @@
 //!
 //! ```
 //! use poecal::simulate::elbow;
-//! use poecal::{CalibrationOptions, Kind, Simulation, calibrate};
+//! use poecal::{CalibrationOptions, SessionKind, Simulation, calibrate};
 //!
 //! // A six-axis arm whose axes are off by 1° and 2 mm, and 60 points of its tip with noise of 0.05 mm from a tracker anywhere.
-//! let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+//! let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
 //! let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 //!
 //! // 30 % of the points were held out: their error is the noise of 0.05 mm in each of three coordinates.
@@ -35,15 +35,15 @@
 //!
 //! | to | there is |
 //! |---|---|
-//! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`Limits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, MJCF, SDF, TOML, makers' files or a calibration |
+//! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`JointLimits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, MJCF, SDF, TOML, makers' files or a calibration |
 //! | state measurements | [`Dataset`], [`Observation`], [`Measurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] returns a [`MeasurementFile`] |
-//! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`Robust`], [`Loss`], [`Formulation`]) returns a [`Calibration`] with its [`CalibratedTarget`]s |
+//! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`RobustLoss`], [`Loss`], [`Formulation`]) returns a [`Calibration`] with its [`CalibratedTarget`]s |
 //! | assess it | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |
 //! | judge it by other measurements | [`judge`], which returns a [`Judgement`] |
-//! | predict | [`Robot::forward_kinematics`]; [`predicted`], which returns [`Predicted`] poses in a [`PredictionFrame`] with their uncertainty |
-//! | plan a session | [`identify`] a [`PlannedSession`], which returns a [`Foresight`] |
+//! | predict | [`Robot::forward_kinematics`]; [`predict_readings`], which returns [`PredictedPoses`] poses in a [`PredictionFrame`] with their uncertainty |
+//! | plan a session | [`identify`] a [`PlannedSession`], which returns a [`ExpectedUncertainty`] |
 //! | hand it on | [`CalibrationFile`] with its [`Inputs`], [`Residuals`], [`ModelFormat`], [`calibration_page`] (the report), [`summary`] (the table) |
-//! | try it without a robot | [`Simulation`], [`Simulated`], [`Kind`] and the robots of [`simulate`] |
+//! | try it without a robot | [`Simulation`], [`SimulationResult`], [`SessionKind`] and the robots of [`simulate`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //! | solve other least squares | [`solve`]: Levenberg-Marquardt on a manifold, which knows no robots |
 //!
@@ -59,22 +59,22 @@
 pub use poecal_arm::{AllBranches, Arm, Branches, HeldBranches, lie};
 pub use poecal_calibrate::{
     Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation,
-    Judgement, Loss, ModelAccuracy, Robust, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
+    Judgement, Loss, ModelAccuracy, RobustLoss, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
 };
-pub use poecal_fit::analysis::{Direction, Foresight, Identifiability, PlannedSession, identify};
+pub use poecal_fit::analysis::{Direction, ExpectedUncertainty, Identifiability, PlannedSession, identify};
 pub use poecal_fit::forensics::Diagnosis;
 pub use poecal_formats::urdf::ChainSelection;
 pub use poecal_import::{MeasurementFile, ReadOptions, read as read_measurements};
 pub use poecal_model::measurement::{
-    Dataset, Kind, Measured, Measurement, Noise, Observation, Quantity, Set,
+    Dataset, MeasuredQuantities, Measurement, Noise, Observation, Quantity, SessionKind, Set,
 };
-pub use poecal_model::robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
-pub use poecal_model::simulate::{Simulated, Simulation};
+pub use poecal_model::robot::{Joint, JointKind, JointLimits, Reading, Robot, Tolerance};
+pub use poecal_model::simulate::{Simulation, SimulationResult};
 pub use poecal_numerics::error::{Choices, Error, ErrorKind, Result};
 pub use poecal_report::{calibration_page, summary};
 pub use poecal_results::calibration_file::{CalibrationFile, Inputs};
 pub use poecal_results::model::{Model, ModelFormat, ModelSource};
-pub use poecal_results::predictions::{Predicted, PredictionFrame, predicted};
+pub use poecal_results::predictions::{PredictedPoses, PredictionFrame, predict_readings};
 pub use poecal_results::residuals::Residuals;
 
 #[doc(inline)]

@@ -11,26 +11,26 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// The axis of a revolute joint at zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Axis {
+pub(crate) struct RevoluteAxis {
     pub(crate) w: Vector3<f64>,
     pub(crate) point: Vector3<f64>,
 }
 
-impl Axis {
+impl RevoluteAxis {
     pub(crate) fn from_screw(screw: &Screw) -> Self {
-        Axis { w: screw.w(), point: screw.nearest_point(&Vector3::zeros()) }
+        RevoluteAxis { w: screw.w(), point: screw.nearest_point(&Vector3::zeros()) }
     }
 
     /// A direction after a rotation.
     #[inline]
-    pub(crate) fn turned(&self, (c, s): (f64, f64), v: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn rotate(&self, (c, s): (f64, f64), v: &Vector3<f64>) -> Vector3<f64> {
         v * c + self.w.cross(v) * s + self.w * ((1.0 - c) * self.w.dot(v))
     }
 
     /// A point after a rotation.
     #[inline]
-    pub(crate) fn moved(&self, turn: (f64, f64), p: &Vector3<f64>) -> Vector3<f64> {
-        self.point + self.turned(turn, &(p - self.point))
+    pub(crate) fn rotate_point(&self, turn: (f64, f64), p: &Vector3<f64>) -> Vector3<f64> {
+        self.point + self.rotate(turn, &(p - self.point))
     }
 
     /// Angle that turns `from` closest to `to`.
@@ -42,7 +42,7 @@ impl Axis {
     }
 
     /// Point between two axes that is nearest to both, and their distance there; `None` if they are parallel.
-    pub(crate) fn between(&self, other: &Axis) -> Option<(Vector3<f64>, f64)> {
+    pub(crate) fn midpoint(&self, other: &RevoluteAxis) -> Option<(Vector3<f64>, f64)> {
         let across = self.w.cross(&other.w);
         let squared = across.norm_squared();
         if squared < 1e-4 {
@@ -62,7 +62,7 @@ impl Axis {
 
 /// `(cos, sin)` of minus the angle.
 #[inline]
-pub(crate) fn back(angle: f64) -> (f64, f64) {
+pub(crate) fn reverse_turn(angle: f64) -> (f64, f64) {
     let (c, s) = cosine_and_sine(angle);
     (c, -s)
 }

@@ -12,11 +12,11 @@ use core::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::axis::{Axis, back};
-use super::roots::{Angles, Care, Trigonometric};
-use super::tables::{EQUATIONS, Table, by_halves, functions, harmonics, third};
+use super::axis::{RevoluteAxis, reverse_turn};
+use super::roots::{AngleList, RootTolerance, TrigonometricPolynomial};
+use super::tables::{AngleTable, EQUATIONS, by_halves, functions, harmonics, third_of_turn};
 use crate::lie::Pose;
-use crate::small::{determinant, null_vector};
+use crate::small_systems::{determinant, null_vector};
 use crate::trig::cosine_and_sine;
 
 // The functions of numbers, where there is no standard library.
@@ -34,24 +34,24 @@ const TURNED: [f64; 2] = [0.734, -1.187];
 
 /// An arm of six axes, with quantities that do not depend on the pose.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct General {
-    axes: [Axis; 6],
+pub(crate) struct GeneralArm {
+    axes: [RevoluteAxis; 6],
     first: usize,
     origin: Vector3<f64>,
     scale: f64,
     /// Numbers of each equation by 1, cos and sin of the third angle, then of the fourth and the fifth.
-    left: [[Table; 3]; EQUATIONS],
+    left: [[AngleTable; 3]; EQUATIONS],
     /// Cosines and sines of the angles at which the polynomial is sampled.
     turns: [(f64, f64); SAMPLES],
 }
 
-impl General {
+impl GeneralArm {
     /// Axes at which the loop can be opened.
     pub(crate) const FIRST: [usize; 3] = [0, 5, 4];
 
     /// The loop opened at an axis: `first` (0, 4, or 5) of the arm's comes first, so that the last four are fixed to each other for all
     /// poses.
-    pub(crate) fn new(axes: &[Axis; 6], first: usize, reach_m: f64) -> Self {
+    pub(crate) fn new(axes: &[RevoluteAxis; 6], first: usize, reach_m: f64) -> Self {
         let mut axes = *axes;
         axes.rotate_left(first);
         let [.., a3, a4, a5, a6] = &axes;
@@ -59,9 +59,9 @@ impl General {
         let scale = 1.0 / reach_m;
         let seen = |k3: usize, k4: usize, k5: usize| {
             let turn = |k: usize, by: f64| cosine_and_sine(TAU / 3.0 * k as f64 + by);
-            let (t3, t4, t5) = (third(k3), turn(k4, TURNED[0]), turn(k5, TURNED[1]));
-            let p = a3.moved(t3, &a4.moved(t4, &a5.moved(t5, &a6.point)));
-            let l = a3.turned(t3, &a4.turned(t4, &a5.turned(t5, &a6.w)));
+            let (t3, t4, t5) = (third_of_turn(k3), turn(k4, TURNED[0]), turn(k5, TURNED[1]));
+            let p = a3.rotate_point(t3, &a4.rotate_point(t4, &a5.rotate_point(t5, &a6.point)));
+            let l = a3.rotate(t3, &a4.rotate(t4, &a5.rotate(t5, &a6.w)));
             functions(&((p - origin) * scale), &l)
         };
         let mut left = [[[[0.0; 3]; 3]; 3]; EQUATIONS];
@@ -106,20 +106,24 @@ impl General {
         for (k, it) in turns.iter_mut().enumerate() {
             *it = cosine_and_sine(TAU * k as f64 / SAMPLES as f64);
         }
-        General { axes, first, origin, scale, left, turns }
+        GeneralArm { axes, first, origin, scale, left, turns }
     }
 
     /// Right side by 1, cos and sin of the first two angles: eight unknown products, and the constant part.
-    fn right(&self, axes: &[Axis; 6], motion: &Pose) -> ([[f64; UNKNOWN]; EQUATIONS], [f64; EQUATIONS]) {
+    fn right(
+        &self,
+        axes: &[RevoluteAxis; 6],
+        motion: &Pose,
+    ) -> ([[f64; UNKNOWN]; EQUATIONS], [f64; EQUATIONS]) {
         let [a1, a2, .., a6] = axes;
         let (p, l) = (motion.act(&a6.point), motion.rotation * a6.w);
         let mut samples = [[[0.0; EQUATIONS]; 3]; 3];
         for (k1, samples) in samples.iter_mut().enumerate() {
-            let (c, s) = third(k1);
-            let (p, l) = (a1.moved((c, -s), &p), a1.turned((c, -s), &l));
+            let (c, s) = third_of_turn(k1);
+            let (p, l) = (a1.rotate_point((c, -s), &p), a1.rotate((c, -s), &l));
             for (k2, it) in samples.iter_mut().enumerate() {
-                let (c, s) = third(k2);
-                let (p, l) = (a2.moved((c, -s), &p), a2.turned((c, -s), &l));
+                let (c, s) = third_of_turn(k2);
+                let (p, l) = (a2.rotate_point((c, -s), &p), a2.rotate((c, -s), &l));
                 *it = functions(&((p - self.origin) * self.scale), &l);
             }
         }
@@ -144,7 +148,7 @@ impl General {
     }
 
     /// Six combinations of the equations that are free of the first two angles, by 1, cos and sin of the third.
-    fn combined(&self, axes: &[Axis; 6], motion: &Pose) -> [[Table; 3]; 6] {
+    fn combinations(&self, axes: &[RevoluteAxis; 6], motion: &Pose) -> [[AngleTable; 3]; 6] {
         let (mut unknown, constant) = self.right(axes, motion);
         // Reflections that make the unknown products triangular leave six rows without any.
         let mut keep = [[0.0; EQUATIONS]; 6];
@@ -204,13 +208,13 @@ impl General {
         if self.first > 0 {
             // From the base, axes after the pose are moved by it.
             for axis in axes.iter_mut().take(6 - self.first) {
-                *axis = Axis { w: motion.rotation * axis.w, point: motion.act(&axis.point) };
+                *axis = RevoluteAxis { w: motion.rotation * axis.w, point: motion.act(&axis.point) };
             }
         }
-        let equations = self.combined(&axes, motion);
+        let equations = self.combinations(&axes, motion);
         let mut samples = [0.0; SAMPLES];
         for ((c, s), it) in self.turns.iter().zip(&mut samples) {
-            let (mut matrix, factor) = reduced(&equations, *c, *s);
+            let (mut matrix, factor) = reduce_equations(&equations, *c, *s);
             *it = factor * determinant(&mut matrix);
         }
         let largest = samples.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
@@ -226,11 +230,12 @@ impl General {
                 it.1 += share * sample * s;
             }
         }
-        let roots: Angles<24> = Trigonometric { coefficients }.roots(48, Care::rounding(BEYOND));
+        let roots: AngleList<24> =
+            TrigonometricPolynomial { coefficients }.roots(48, RootTolerance::rounding(BEYOND));
         for &q3 in roots.as_slice() {
             let (c, s) = cosine_and_sine(q3);
             // t and t² of the fourth times the powers of the fifth.
-            let x = null_vector(&mut reduced(&equations, c, s).0);
+            let x = null_vector(&mut reduce_equations(&equations, c, s).0);
             let ratio = |pairs: &[(usize, usize)]| {
                 let (up, down) = pairs
                     .iter()
@@ -242,18 +247,18 @@ impl General {
             const FIVE: [(usize, usize); 4] = [(1, 0), (2, 1), (4, 3), (5, 4)];
             const FOUR: [(usize, usize); 3] = [(3, 0), (4, 1), (5, 2)];
             let (q4, q5) = (ratio(&FOUR) + TURNED[0], ratio(&FIVE) + TURNED[1]);
-            let mut q = self.completed(&axes, motion, [q3, q4, q5]);
+            let mut q = self.complete_angles(&axes, motion, [q3, q4, q5]);
             q.rotate_right(self.first);
             push(q);
         }
     }
 
     /// All six angles from the middle three: the first two bring the sixth axis to its pose, the last turns about it.
-    fn completed(&self, axes: &[Axis; 6], motion: &Pose, [q3, q4, q5]: [f64; 3]) -> [f64; 6] {
+    fn complete_angles(&self, axes: &[RevoluteAxis; 6], motion: &Pose, [q3, q4, q5]: [f64; 3]) -> [f64; 6] {
         let [a1, a2, a3, a4, a5, a6] = axes;
         let (t3, t4, t5) = (cosine_and_sine(q3), cosine_and_sine(q4), cosine_and_sine(q5));
-        let p = a3.moved(t3, &a4.moved(t4, &a5.moved(t5, &a6.point)));
-        let l = a3.turned(t3, &a4.turned(t4, &a5.turned(t5, &a6.w)));
+        let p = a3.rotate_point(t3, &a4.rotate_point(t4, &a5.rotate_point(t5, &a6.point)));
+        let l = a3.rotate(t3, &a4.rotate(t4, &a5.rotate(t5, &a6.w)));
         let (goal_p, goal_l) = (motion.act(&a6.point) - a1.point, motion.rotation * a6.w);
         // Invariants of the first joint: heights along its axis, and the square of a length; linear in cos q₂ and sin q₂.
         let mut normal = [[0.0; 2]; 2];
@@ -287,15 +292,15 @@ impl General {
         let s2 = (right[1] * normal[0][0] - right[0] * normal[1][0]) / det;
         let q2 = if det > 0.0 { s2.atan2(c2) } else { 0.0 };
         let t2 = cosine_and_sine(q2);
-        let (p, l) = (a2.moved(t2, &p) - a1.point, a2.turned(t2, &l));
+        let (p, l) = (a2.rotate_point(t2, &p) - a1.point, a2.rotate(t2, &l));
         let flat = |v: &Vector3<f64>| v - a1.w * a1.w.dot(v);
         let (p, l, goal_p, goal_l) = (flat(&p) * scale, flat(&l), flat(&goal_p) * scale, flat(&goal_l));
         let across = a1.w.dot(&(p.cross(&goal_p) + l.cross(&goal_l)));
         let q1 = across.atan2(p.dot(&goal_p) + l.dot(&goal_l));
-        let side = crate::lie::rotation::perpendicular(&a6.w);
+        let side = crate::lie::rotation::perpendicular_to(&a6.w);
         let mut turned = motion.rotation * side;
         for (axis, q) in [(a1, q1), (a2, q2), (a3, q3), (a4, q4), (a5, q5)] {
-            turned = axis.turned(back(q), &turned);
+            turned = axis.rotate(reverse_turn(q), &turned);
         }
         [q1, q2, q3, q4, q5, a6.angle(&side, &turned)]
     }
@@ -306,7 +311,7 @@ impl General {
 /// The resultant has the equations and the equations times the tangent t of half the fourth angle, as blocks of the powers of t: `[A B
 /// C 0; 0 A B C] (1, t, t², t³) = 0`, each block by 1, tan and tan² of half the fifth angle. Its first and its last columns have
 /// numbers in one half of the rows only: without them, `t` and `t²` times the powers of the fifth remain.
-fn reduced(equations: &[[Table; 3]; 6], c: f64, s: f64) -> ([[f64; 6]; 6], f64) {
+fn reduce_equations(equations: &[[AngleTable; 3]; 6], c: f64, s: f64) -> ([[f64; 6]; 6], f64) {
     let (mut first, mut last) = ([[0.0; 9]; 6], [[0.0; 9]; 6]);
     for (row, [one, cosine, sine]) in equations.iter().enumerate() {
         for four in 0..3 {

@@ -4,19 +4,19 @@
 //! for seven joints.
 
 mod axis;
-mod found;
+mod branch_list;
 mod general;
-mod held;
+mod held_joint;
 mod parallel;
 mod roots;
+mod solution_methods;
 mod tables;
-mod ways;
 mod wrist;
 
-pub use found::{Branches, MOST_BRANCHES};
-use found::{SAME, apart, sort, turned};
-pub use held::HeldBranches;
-use ways::{MOST_STEPS, Ways};
+pub use branch_list::{Branches, MOST_BRANCHES};
+use branch_list::{SAME, largest_difference, sort, unwind_turns};
+pub use held_joint::HeldBranches;
+use solution_methods::{MOST_STEPS, SolutionMethods};
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -24,8 +24,8 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 use crate::arm::Arm;
 use crate::lie::{Pose, Screw};
-use crate::newton::{REACHED, Six, newton};
-use crate::trig::wrapped;
+use crate::newton::{REACHED, SixJoints, newton};
+use crate::trig::wrap_angle;
 
 /// All branches of one arm of six revolute joints. They begin with those of the nearest arm that has them in closed form: its last or first
 /// three axes meet, or its second to fourth, or third to fifth, are parallel. Newton's iteration of the arm itself follows. The starts are the
@@ -42,7 +42,7 @@ use crate::trig::wrapped;
 /// let screws = axes.map(|(direction, point)| Screw::revolute(&direction, &point));
 /// let arm = Arm::new(&screws, &Pose::from_translation(at(0.7, 1.0))).unwrap();
 /// let target = arm.forward_kinematics(&[0.3, 0.2, -0.4, 0.5, 0.6, 0.7]);
-/// let branches = AllBranches::new(&arm).unwrap().at(&target);
+/// let branches = AllBranches::new(&arm).unwrap().branches_at(&target);
 /// assert_eq!(branches.as_slice().len(), 4);
 /// for q in branches.as_slice() {
 ///     assert!((arm.forward_kinematics(q).translation - target.translation).norm() < 1e-10);
@@ -51,7 +51,7 @@ use crate::trig::wrapped;
 #[derive(Clone, Debug, PartialEq)]
 pub struct AllBranches {
     arm: Arm,
-    ways: Ways,
+    ways: SolutionMethods,
 }
 
 impl AllBranches {
@@ -63,15 +63,15 @@ impl AllBranches {
         if screws.iter().any(Screw::is_prismatic) {
             return None;
         }
-        let mut ways = Ways::new(screws, arm.home(), (arm.reach_m(), senses), None);
-        ways.keep(ways.ranked(&Six::from_arm(arm)));
+        let mut ways = SolutionMethods::new(screws, arm.home(), (arm.reach_m(), senses), None);
+        ways.keep(ways.rank_methods(&SixJoints::from_arm(arm)));
         Some(AllBranches { arm: arm.clone(), ways })
     }
 
     /// Configurations with the tip at a pose of the base.
     #[must_use]
-    pub fn at(&self, target: &Pose) -> Branches {
-        self.ways.branches(&Six::from_arm(&self.arm), target)
+    pub fn branches_at(&self, target: &Pose) -> Branches {
+        self.ways.branches(&SixJoints::from_arm(&self.arm), target)
     }
 
     /// Configurations within the arm's limits ([`Arm::limits`]) with the tip at a pose. For each branch it is the one whose joints are nearest to
@@ -79,10 +79,10 @@ impl AllBranches {
     #[must_use]
     pub fn within_limits(&self, target: &Pose, near: &[f64; 6]) -> Branches {
         let mut found = Branches::EMPTY;
-        for branch in self.at(target).as_slice() {
-            let Some(mut q) = turned(branch, near, self.arm.limits()) else { continue };
+        for branch in self.branches_at(target).as_slice() {
+            let Some(mut q) = unwind_turns(branch, near, self.arm.limits()) else { continue };
             if !self.arm.is_rigid() {
-                newton(&Six::from_arm(&self.arm), target, &mut q, MOST_STEPS);
+                newton(&SixJoints::from_arm(&self.arm), target, &mut q, MOST_STEPS);
             }
             found.add(&q, 0.0);
         }
@@ -90,26 +90,26 @@ impl AllBranches {
         found
     }
 
-    /// As [`Arm::nearest`]; if its iteration does not reach the pose, the branch with the least motion of the joint that moves most.
-    pub fn nearest(&self, target: &Pose, q: &mut [f64; 6]) -> f64 {
+    /// As [`Arm::solve_nearest`]; if its iteration does not reach the pose, the branch with the least motion of the joint that moves most.
+    pub fn solve_nearest(&self, target: &Pose, q: &mut [f64; 6]) -> f64 {
         let mut near = *q;
-        let left = self.arm.nearest(target, &mut near);
+        let left = self.arm.solve_nearest(target, &mut near);
         if left < REACHED {
             *q = near;
             return left;
         }
-        let found = self.at(target);
+        let found = self.branches_at(target);
         let far = |branch: &[f64; 6]| {
-            branch.iter().zip(&*q).map(|(there, here)| wrapped(there - here).abs()).fold(0.0, f64::max)
+            branch.iter().zip(&*q).map(|(there, here)| wrap_angle(there - here).abs()).fold(0.0, f64::max)
         };
         let Some(best) = found.as_slice().iter().min_by(|one, other| far(one).total_cmp(&far(other))) else {
             *q = near;
             return left;
         };
         for (here, there) in q.iter_mut().zip(best) {
-            *here += wrapped(there - *here);
+            *here += wrap_angle(there - *here);
         }
-        newton(&Six::from_arm(&self.arm), target, q, MOST_STEPS)
+        newton(&SixJoints::from_arm(&self.arm), target, q, MOST_STEPS)
     }
 }
 
@@ -139,7 +139,7 @@ mod tests {
         let arm = arm();
         let target = arm.forward_kinematics(&[3.2, -0.3, 0.9, 0.1, 0.6, 0.0]);
         let mut q = [3.0, -0.4, 1.0, 0.0, 0.5, 0.2];
-        assert!(AllBranches::new(&arm).unwrap().nearest(&target, &mut q) < 1e-12);
+        assert!(AllBranches::new(&arm).unwrap().solve_nearest(&target, &mut q) < 1e-12);
         assert!((q[0] - 3.2).abs() < 1e-9);
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::axis::{Axis, back};
-use super::roots::{Care, linear};
+use super::axis::{RevoluteAxis, reverse_turn};
+use super::roots::{RootTolerance, linear};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -13,23 +13,23 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// An arm of six axes, the second, third and fourth of which are (nearly) parallel, and the fifth of which meets the sixth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Parallel {
-    axes: [Axis; 6],
-    care: Care,
+pub(crate) struct ParallelAxesArm {
+    axes: [RevoluteAxis; 6],
+    care: RootTolerance,
     /// Intersection of the fifth axis with the sixth.
     wrist: Vector3<f64>,
     /// Direction of the parallel axes.
     along: Vector3<f64>,
 }
 
-impl Parallel {
+impl ParallelAxesArm {
     /// The nearest arm of this kind, and the distance from it: largest angle between the axes (rad), and distance of the last two (m).
-    pub(crate) fn new(axes: &[Axis; 6], reach_m: f64) -> Option<(Self, f64, f64)> {
+    pub(crate) fn new(axes: &[RevoluteAxis; 6], reach_m: f64) -> Option<(Self, f64, f64)> {
         let first = axes[1].w;
-        let signed = |axis: &Axis| if axis.w.dot(&first) < 0.0 { -axis.w } else { axis.w };
+        let signed = |axis: &RevoluteAxis| if axis.w.dot(&first) < 0.0 { -axis.w } else { axis.w };
         let along = (first + signed(&axes[2]) + signed(&axes[3])).normalize();
         let angle = axes[1..4].iter().map(|axis| axis.w.cross(&along).norm()).fold(0.0, f64::max);
-        let (wrist, apart) = axes[4].between(&axes[5])?;
+        let (wrist, apart) = axes[4].midpoint(&axes[5])?;
         let mut axes = *axes;
         for axis in &mut axes[1..4] {
             // Intersection with the plane of the wrist, with the axis's own sense.
@@ -42,7 +42,12 @@ impl Parallel {
         }
         let bends = axes[0].w.cross(&along).norm() > 0.1 && axes[4].w.cross(&along).norm() > 0.1;
         bends.then_some((
-            Parallel { axes, wrist, along, care: Care::from_deviation(angle.max(apart / reach_m)) },
+            ParallelAxesArm {
+                axes,
+                wrist,
+                along,
+                care: RootTolerance::from_deviation(angle.max(apart / reach_m)),
+            },
             angle,
             apart,
         ))
@@ -59,34 +64,36 @@ impl Parallel {
         let height = w.dot(&(self.wrist - a1.point)) - w.dot(&level);
         let w6 = motion.rotation * a6.w;
         let (across, along) = (a5.w.cross(w), a5.w * a5.w.dot(w));
-        let side = rotation::perpendicular(w);
-        for (q1, one) in linear(a, b, height, self.care).each() {
-            let turned = a1.turned(cosine_and_sine(q1), w);
+        let side = rotation::perpendicular_to(w);
+        for (q1, one) in linear(a, b, height, self.care).iter_flagged() {
+            let turned = a1.rotate(cosine_and_sine(q1), w);
             // w6 · exp(-w5 q5) w = (R w6) · exp(w1 q1) w.
             let (a, b) = (a6.w.dot(&(w - along)), -a6.w.dot(&across));
             let goal = motion.rotation.transpose() * turned;
-            for (q5, two) in linear(a, b, w6.dot(&turned) - a6.w.dot(&along), self.care.always()).each() {
-                let bent = a5.turned(back(q5), w);
+            for (q5, two) in
+                linear(a, b, w6.dot(&turned) - a6.w.dot(&along), self.care.with_forced_pairs()).iter_flagged()
+            {
+                let bent = a5.rotate(reverse_turn(q5), w);
                 let q6 = a6.angle(&goal, &bent);
                 // Motion of the parallel axes: a rotation, and a position of the fourth.
                 let undone = |v: &Vector3<f64>| {
-                    let v = a5.turned(back(q5), v);
-                    a1.turned(back(q1), &(motion.rotation * a6.turned(back(q6), &v)))
+                    let v = a5.rotate(reverse_turn(q5), v);
+                    a1.rotate(reverse_turn(q1), &(motion.rotation * a6.rotate(reverse_turn(q6), &v)))
                 };
-                let turn = Axis { w: *w, point: a2.point }.angle(&side, &undone(&side));
-                let at = a6.moved(back(q6), &a5.moved(back(q5), &a4.point));
-                let at = a1.moved(back(q1), &motion.act(&at)) - a2.point;
+                let turn = RevoluteAxis { w: *w, point: a2.point }.angle(&side, &undone(&side));
+                let at = a6.rotate_point(reverse_turn(q6), &a5.rotate_point(reverse_turn(q5), &a4.point));
+                let at = a1.rotate_point(reverse_turn(q1), &motion.act(&at)) - a2.point;
                 let (upper, fore) = (a3.point - a2.point, a4.point - a3.point);
                 let flat = |v: Vector3<f64>| v - w * w.dot(&v);
                 let (at, upper, fore) = (flat(at), flat(upper), flat(fore));
                 // |upper + exp(w q3) fore| = |at|.
                 let (a, b) = (upper.dot(&fore), upper.dot(&w.cross(&fore)));
                 let d = 0.5 * (at.norm_squared() - upper.norm_squared() - fore.norm_squared());
-                for (q3, three) in linear(a, b, d, self.care).each() {
-                    let axis = Axis { w: *w, point: a2.point };
-                    let reached = upper + axis.turned(cosine_and_sine(q3), &fore);
+                for (q3, three) in linear(a, b, d, self.care).iter_flagged() {
+                    let axis = RevoluteAxis { w: *w, point: a2.point };
+                    let reached = upper + axis.rotate(cosine_and_sine(q3), &fore);
                     let q2 = axis.angle(&reached, &at);
-                    let sign = |axis: &Axis| axis.w.dot(w);
+                    let sign = |axis: &RevoluteAxis| axis.w.dot(w);
                     let q = [q1, sign(a2) * q2, sign(a3) * q3, sign(a4) * (turn - q2 - q3), q5, q6];
                     push(q, one || two || three);
                 }

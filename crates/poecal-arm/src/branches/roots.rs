@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use crate::trig::{cosine_and_sine, wrapped};
+use crate::trig::{cosine_and_sine, wrap_angle};
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -10,7 +10,7 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// Angles, at most `N`; more are left out.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Angles<const N: usize> {
+pub(crate) struct AngleList<const N: usize> {
     pub(crate) values: [f64; N],
     pub(crate) count: usize,
     /// For each, true if it is one of two that meet or almost do.
@@ -19,7 +19,7 @@ pub(crate) struct Angles<const N: usize> {
 
 /// Tolerances for two angles that meet, or almost do; they grow with the distance of an arm from its relative in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Care {
+pub(crate) struct RootTolerance {
     /// Distance of two angles (rad) below which they almost meet.
     almost: f64,
     /// Least distance of two angles that meet, rad.
@@ -28,32 +28,32 @@ pub(crate) struct Care {
     beyond: f64,
 }
 
-impl Care {
+impl RootTolerance {
     /// No tolerance: real roots alone.
-    pub(crate) const NONE: Self = Care { almost: 0.0, apart: 0.0, beyond: 0.0 };
+    pub(crate) const NONE: Self = RootTolerance { almost: 0.0, apart: 0.0, beyond: 0.0 };
     /// Largest tolerance, for an arm at the largest distance from its relative.
-    const MOST: Self = Care { almost: 0.15, apart: 0.06, beyond: 1.6 };
+    const MOST: Self = RootTolerance { almost: 0.15, apart: 0.06, beyond: 1.6 };
 
     /// Tolerance for an arm at this distance (rad, lengths over reach) from its relative, which moves double roots by its square root.
     pub(crate) fn from_deviation(off: f64) -> Self {
         let share = (60.0 * off.sqrt()).min(1.0);
-        let Care { almost, apart, beyond } = Self::MOST;
-        Care { almost: share * almost, apart: share * apart, beyond: share * beyond }
+        let RootTolerance { almost, apart, beyond } = Self::MOST;
+        RootTolerance { almost: share * almost, apart: share * apart, beyond: share * beyond }
     }
 
     /// The same tolerance, with a pair wherever none is real.
-    pub(crate) fn always(self) -> Self {
-        Care { apart: 0.0, beyond: f64::INFINITY, ..self }
+    pub(crate) fn with_forced_pairs(self) -> Self {
+        RootTolerance { apart: 0.0, beyond: f64::INFINITY, ..self }
     }
 
     /// Tolerance for roots that are exact except for rounding.
     pub(crate) fn rounding(beyond: f64) -> Self {
-        Care { beyond, ..Self::NONE }
+        RootTolerance { beyond, ..Self::NONE }
     }
 }
 
-impl<const N: usize> Angles<N> {
-    pub(crate) const EMPTY: Self = Angles { values: [0.0; N], count: 0, touching: [false; N] };
+impl<const N: usize> AngleList<N> {
+    pub(crate) const EMPTY: Self = AngleList { values: [0.0; N], count: 0, touching: [false; N] };
 
     fn push(&mut self, angle: f64, is_touching: bool) {
         if self.count < N {
@@ -64,7 +64,7 @@ impl<const N: usize> Angles<N> {
     }
 
     /// Angles, each with true if it is one of two that meet or almost do.
-    pub(crate) fn each(&self) -> impl Iterator<Item = (f64, bool)> {
+    pub(crate) fn iter_flagged(&self) -> impl Iterator<Item = (f64, bool)> {
         let all = self.values.iter().zip(&self.touching).take(self.count);
         all.map(|(value, is_touching)| (*value, *is_touching))
     }
@@ -78,7 +78,7 @@ impl<const N: usize> Angles<N> {
     fn mark(&mut self, almost: f64) {
         for k in 0..self.count {
             let near =
-                |other: usize| other != k && wrapped(self.values[k] - self.values[other]).abs() < almost;
+                |other: usize| other != k && wrap_angle(self.values[k] - self.values[other]).abs() < almost;
             self.touching[k] |= (0..self.count).any(near);
         }
     }
@@ -90,9 +90,9 @@ impl<const N: usize> Angles<N> {
 
 /// Angles with `a cos θ + b sin θ = d`. If there is none, or two are closer than `apart`, there are two at a distance of `apart` (rad)
 /// about the place where they meet. The imaginary part of the solutions must be below `beyond`.
-pub(crate) fn linear(a: f64, b: f64, d: f64, care: Care) -> Angles<2> {
-    let Care { almost, apart, beyond } = care;
-    let mut found = Angles::EMPTY;
+pub(crate) fn linear(a: f64, b: f64, d: f64, care: RootTolerance) -> AngleList<2> {
+    let RootTolerance { almost, apart, beyond } = care;
+    let mut found = AngleList::EMPTY;
     let size = a.hypot(b);
     let (middle, share) = if size > 0.0 { (b.atan2(a), d / size) } else { (0.0, 0.0) };
     let half = if share.abs() <= 1.0 {
@@ -114,14 +114,14 @@ const DEPTH: u32 = 7;
 
 /// A trigonometric polynomial of degree `D`, `coefficients[k] = (aₖ, bₖ)`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trigonometric<const TERMS: usize> {
+pub(crate) struct TrigonometricPolynomial<const TERMS: usize> {
     pub(crate) coefficients: [(f64, f64); TERMS],
 }
 
-impl<const TERMS: usize> Trigonometric<TERMS> {
+impl<const TERMS: usize> TrigonometricPolynomial<TERMS> {
     /// Value and first two derivatives.
     #[inline]
-    fn at(&self, angle: f64) -> (f64, f64, f64) {
+    fn evaluate(&self, angle: f64) -> (f64, f64, f64) {
         let (c, s) = cosine_and_sine(angle);
         let (mut ck, mut sk) = (1.0, 0.0);
         let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
@@ -137,10 +137,10 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
     }
 
     /// The root between two angles at which the values have opposite signs.
-    fn between(&self, mut low: f64, mut high: f64, low_value: f64) -> f64 {
+    fn root_between(&self, mut low: f64, mut high: f64, low_value: f64) -> f64 {
         let mut at = 0.5 * (low + high);
         for _ in 0..60 {
-            let (value, slope, _) = self.at(at);
+            let (value, slope, _) = self.evaluate(at);
             if (value > 0.0) == (low_value > 0.0) {
                 low = at;
             } else {
@@ -159,8 +159,8 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
 
     /// All real roots. If two are about to meet or have just separated (imaginary part below `beyond`), there are two at least `apart`
     /// from each other. The turn is searched in `grid` parts.
-    pub(crate) fn roots<const N: usize>(&self, grid: usize, care: Care) -> Angles<N> {
-        let mut found = Angles::EMPTY;
+    pub(crate) fn roots<const N: usize>(&self, grid: usize, care: RootTolerance) -> AngleList<N> {
+        let mut found = AngleList::EMPTY;
         let half = PI / grid as f64;
         for k in 0..grid {
             let middle = half * (2 * k + 1) as f64 - PI;
@@ -177,10 +177,10 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
         middle: f64,
         half: f64,
         depth: u32,
-        care: Care,
-        found: &mut Angles<N>,
+        care: RootTolerance,
+        found: &mut AngleList<N>,
     ) {
-        let Care { apart, beyond, .. } = care;
+        let RootTolerance { apart, beyond, .. } = care;
         let [value, slope, bend, third, fourth] = self.derivatives(middle).map(f64::abs);
         // The fourth derivative is nearly constant.
         let (square, fourth) = (half * half, 2.0 * fourth);
@@ -197,17 +197,17 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
             return;
         }
         let (low, high) = (middle - half, middle + half);
-        let (low_value, low_slope, _) = self.at(low);
-        let (high_value, high_slope, _) = self.at(high);
+        let (low_value, low_slope, _) = self.evaluate(low);
+        let (high_value, high_slope, _) = self.evaluate(high);
         if (low_value > 0.0) != (high_value > 0.0) {
-            found.push(self.between(low, high, low_value), false);
+            found.push(self.root_between(low, high, low_value), false);
         } else if (low_value > 0.0) == (low_slope < 0.0) && (low_slope > 0.0) != (high_slope > 0.0) {
             // Between them the polynomial comes closest to zero.
             let extremum = self.extremum(low, high, low_slope);
-            let (there, _, bend) = self.at(extremum);
+            let (there, _, bend) = self.evaluate(extremum);
             if (there > 0.0) != (low_value > 0.0) {
-                found.push(self.between(low, extremum, low_value), false);
-                found.push(self.between(extremum, high, there), false);
+                found.push(self.root_between(low, extremum, low_value), false);
+                found.push(self.root_between(extremum, high, there), false);
             } else if (2.0 * there / bend).abs() < beyond * beyond {
                 found.push(extremum - 0.5 * apart, true);
                 found.push(extremum + 0.5 * apart, true);
@@ -239,7 +239,7 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
     fn extremum(&self, mut low: f64, mut high: f64, low_slope: f64) -> f64 {
         let mut at = 0.5 * (low + high);
         for _ in 0..40 {
-            let (_, slope, bend) = self.at(at);
+            let (_, slope, bend) = self.evaluate(at);
             if (slope > 0.0) == (low_slope > 0.0) {
                 low = at;
             } else {

@@ -10,7 +10,7 @@ use crate::trig::cosine_and_sine;
 pub(super) const EQUATIONS: usize = 14;
 
 /// Numbers of a function of two angles by 1, cos and sin of each.
-pub(super) type Table = [[f64; 3]; 3];
+pub(super) type AngleTable = [[f64; 3]; 3];
 
 /// Functions of the point and the direction that are equal from both ends.
 #[inline]
@@ -34,7 +34,7 @@ pub(super) fn harmonics(samples: [f64; 3]) -> [f64; 3] {
 
 /// Cosine and sine of `k` thirds of a turn.
 #[inline]
-pub(super) fn third(k: usize) -> (f64, f64) {
+pub(super) fn third_of_turn(k: usize) -> (f64, f64) {
     cosine_and_sine(TAU / 3.0 * k as f64)
 }
 
@@ -43,7 +43,7 @@ const HALVES: [[f64; 3]; 3] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0
 
 /// A table by the tangents of half the angles.
 #[inline]
-pub(super) fn by_halves(table: &Table) -> Table {
+pub(super) fn by_halves(table: &AngleTable) -> AngleTable {
     let mut out = [[0.0; 3]; 3];
     for (row, one) in table.iter().zip(HALVES) {
         for (number, other) in row.iter().zip(HALVES) {

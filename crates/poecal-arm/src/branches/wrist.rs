@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::axis::{Axis, back};
-use super::roots::{Angles, Care, Trigonometric, linear};
+use super::axis::{RevoluteAxis, reverse_turn};
+use super::roots::{AngleList, RootTolerance, TrigonometricPolynomial, linear};
 use crate::lie::{Pose, rotation};
 use crate::trig::cosine_and_sine;
 
@@ -17,14 +17,14 @@ const MET: f64 = 0.03;
 /// An arm of six axes, the last three of which meet (nearly) in a point: the first three determine its position (pieper1968), the others
 /// the orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Wrist {
-    axes: [Axis; 6],
-    care: Care,
+pub(crate) struct SphericalWristArm {
+    axes: [RevoluteAxis; 6],
+    care: RootTolerance,
     centre: Vector3<f64>,
 }
 
 /// The point nearest to three axes (least squares of distances), and the largest distance; `None` if they are almost parallel.
-fn meeting(axes: &[Axis]) -> Option<(Vector3<f64>, f64)> {
+fn meeting_point(axes: &[RevoluteAxis]) -> Option<(Vector3<f64>, f64)> {
     let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());
     for axis in axes {
         let across = Matrix3::identity() - axis.w * axis.w.transpose();
@@ -38,44 +38,48 @@ fn meeting(axes: &[Axis]) -> Option<(Vector3<f64>, f64)> {
         }
     }
     let mut x = [b.x, b.y, b.z];
-    crate::small::solve(&mut rows, &mut x, 1e-6)?;
+    crate::small_systems::solve(&mut rows, &mut x, 1e-6)?;
     let centre = Vector3::new(x[0], x[1], x[2]);
     Some((centre, axes.iter().map(|axis| axis.distance(&centre)).fold(0.0, f64::max)))
 }
 
-impl Wrist {
+impl SphericalWristArm {
     /// The wrist of six axes, and the distance (m) of the last three from meeting.
-    pub(crate) fn new(axes: &[Axis; 6], reach_m: f64) -> Option<(Self, f64)> {
-        let (centre, apart) = meeting(&axes[3..])?;
+    pub(crate) fn new(axes: &[RevoluteAxis; 6], reach_m: f64) -> Option<(Self, f64)> {
+        let (centre, apart) = meeting_point(&axes[3..])?;
         let mut axes = *axes;
-        if let Some((middle, _)) = axes[0].between(&axes[1]) {
+        if let Some((middle, _)) = axes[0].midpoint(&axes[1]) {
             // The point is nearest to the second axis, so that the two are apart by a perpendicular.
             axes[0].point += axes[0].w * axes[0].w.dot(&(middle - axes[0].point));
         }
         // Wrists whose axes are almost parallel turn in two directions only.
         let bends = |one: usize, other: usize| axes[one].w.cross(&axes[other].w).norm() > 0.1;
-        (bends(3, 4) && bends(4, 5))
-            .then_some((Wrist { axes, centre, care: Care::from_deviation(apart / reach_m) }, apart))
+        (bends(3, 4) && bends(4, 5)).then_some((
+            SphericalWristArm { axes, centre, care: RootTolerance::from_deviation(apart / reach_m) },
+            apart,
+        ))
     }
 
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
     pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6], bool)) {
         let [a1, a2, a3, a4, a5, a6] = &self.axes;
         let place = motion.act(&self.centre);
-        self.regional(&place, &mut |[q1, q2, q3], one| {
-            let (t1, t2, t3) = (back(q1), back(q2), back(q3));
-            let undone = |v: &Vector3<f64>| a3.turned(t3, &a2.turned(t2, &a1.turned(t1, v)));
+        self.solve_regional(&place, &mut |[q1, q2, q3], one| {
+            let (t1, t2, t3) = (reverse_turn(q1), reverse_turn(q2), reverse_turn(q3));
+            let undone = |v: &Vector3<f64>| a3.rotate(t3, &a2.rotate(t2, &a1.rotate(t1, v)));
             let w6 = motion.rotation * a6.w;
             let goal = undone(&w6);
             // w4 · exp(w5 q5) w6 = w4 · goal.
             let (across, along) = (a5.w.cross(&a6.w), a5.w * a5.w.dot(&a6.w));
             let (a, b) = (a4.w.dot(&(a6.w - along)), a4.w.dot(&across));
-            let side = rotation::perpendicular(&a6.w);
+            let side = rotation::perpendicular_to(&a6.w);
             let side_goal = undone(&(motion.rotation * side));
-            for (q5, two) in linear(a, b, a4.w.dot(&goal) - a4.w.dot(&along), self.care.always()).each() {
-                let bent = a5.turned(cosine_and_sine(q5), &a6.w);
+            for (q5, two) in
+                linear(a, b, a4.w.dot(&goal) - a4.w.dot(&along), self.care.with_forced_pairs()).iter_flagged()
+            {
+                let bent = a5.rotate(cosine_and_sine(q5), &a6.w);
                 let q4 = a4.angle(&bent, &goal);
-                let back_side = a5.turned(back(q5), &a4.turned(back(q4), &side_goal));
+                let back_side = a5.rotate(reverse_turn(q5), &a4.rotate(reverse_turn(q4), &side_goal));
                 push([q1, q2, q3, q4, q5, a6.angle(&side, &back_side)], one || two);
             }
         });
@@ -83,7 +87,7 @@ impl Wrist {
 
     /// Angles of the first three joints that bring the centre to a position. The first joint does not change the height along its
     /// axis and the distance from a point of it; both are linear in cos q₂ and sin q₂.
-    fn regional(&self, place: &Vector3<f64>, push: &mut impl FnMut([f64; 3], bool)) {
+    fn solve_regional(&self, place: &Vector3<f64>, push: &mut impl FnMut([f64; 3], bool)) {
         let [a1, a2, a3, ..] = &self.axes;
         let q = a2.point - a1.point;
         let goal = place - a1.point;
@@ -92,7 +96,7 @@ impl Wrist {
         let v1 = arm - a3.w * a3.w.dot(&arm);
         let v2 = a3.w.cross(&arm);
         let v0 = a3.point - a2.point + a3.w * a3.w.dot(&arm);
-        let x = rotation::perpendicular(&a2.w);
+        let x = rotation::perpendicular_to(&a2.w);
         let y = a2.w.cross(&x);
         let flat = |v: &Vector3<f64>| (v.dot(&x), v.dot(&y));
         let (ax, ay) = flat(&a1.w);
@@ -115,7 +119,7 @@ impl Wrist {
         let at = |it: &[f64; 3], (c, s): (f64, f64)| it[0] + it[1] * c + it[2] * s;
         let centre = |(c, s): (f64, f64)| v0 + v1 * c + v2 * s;
         let finish = |q2: f64, q3: f64, is_touching: bool, push: &mut dyn FnMut([f64; 3], bool)| {
-            let u = a2.moved(cosine_and_sine(q2), &(a2.point + centre(cosine_and_sine(q3))));
+            let u = a2.rotate_point(cosine_and_sine(q2), &(a2.point + centre(cosine_and_sine(q3))));
             push([a1.angle(&(u - a1.point), &goal), q2, q3], is_touching);
         };
         // If the first axes (nearly) meet or are parallel, one equation has (nearly) no q₂: it determines q₃, the other q₂.
@@ -166,8 +170,8 @@ impl Wrist {
         add(bb, &alpha, &alpha);
         add(-det * det, &squared, &[1.0, 0.0, 0.0]);
         add(det * det, &h, &h);
-        let roots: Angles<8> = Trigonometric { coefficients: sum }.roots(24, self.care);
-        for (q3, is_touching) in roots.each() {
+        let roots: AngleList<8> = TrigonometricPolynomial { coefficients: sum }.roots(24, self.care);
+        for (q3, is_touching) in roots.iter_flagged() {
             let turn = cosine_and_sine(q3);
             let (zx, zy) = flat(&centre(turn));
             let (alpha, beta) = (at(&alpha, turn), at(&beta, turn));

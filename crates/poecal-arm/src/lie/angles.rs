@@ -135,11 +135,13 @@ impl Angles {
 
     /// The other three angles of the same rotation.
     #[must_use]
-    pub fn others(self, [a, b, c]: [f64; 3]) -> [f64; 3] {
+    pub fn other_angles(self, [a, b, c]: [f64; 3]) -> [f64; 3] {
         match self {
-            Angles::Intrinsic([i, _, k]) | Angles::Extrinsic([i, _, k]) => {
-                [wrapped(a + PI), if i == k { -b } else { wrapped(PI - b) }, wrapped(c + PI)]
-            }
+            Angles::Intrinsic([i, _, k]) | Angles::Extrinsic([i, _, k]) => [
+                wrap_to_half_turn(a + PI),
+                if i == k { -b } else { wrap_to_half_turn(PI - b) },
+                wrap_to_half_turn(c + PI),
+            ],
             Angles::RotationVector => {
                 let angle = Vector3::new(a, b, c).norm().max(f64::MIN_POSITIVE);
                 [a, b, c].map(|part| part - 2.0 * PI * part / angle)
@@ -149,7 +151,7 @@ impl Angles {
 }
 
 /// An angle wrapped to ±180°.
-fn wrapped(angle: f64) -> f64 {
+fn wrap_to_half_turn(angle: f64) -> f64 {
     angle - (angle / (2.0 * PI)).round() * 2.0 * PI
 }
 
@@ -187,17 +189,17 @@ impl fmt::Display for Angles {
 /// A word that is no convention.
 ///
 /// ```
-/// use poecal_arm::lie::angles::{Angles, NoConvention};
+/// use poecal_arm::lie::angles::{Angles, UnknownConvention};
 /// assert_eq!("intrinsic_zyx".parse(), Ok(Angles::ZYX));
-/// assert_eq!("intrinsic_zz".parse::<Angles>(), Err(NoConvention));
+/// assert_eq!("intrinsic_zz".parse::<Angles>(), Err(UnknownConvention));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NoConvention;
+pub struct UnknownConvention;
 
 impl FromStr for Angles {
-    type Err = NoConvention;
+    type Err = UnknownConvention;
 
-    fn from_str(text: &str) -> Result<Self, NoConvention> {
+    fn from_str(text: &str) -> Result<Self, UnknownConvention> {
         let axes = |axes: &str| {
             let mut letters = axes.chars().map(|it| "xyz".find(it));
             let found = [letters.next()??, letters.next()??, letters.next()??];
@@ -211,7 +213,7 @@ impl FromStr for Angles {
             Some(("roll", "pitch_yaw")) => Some(Angles::ROLL_PITCH_YAW),
             _ => None,
         };
-        found.ok_or(NoConvention)
+        found.ok_or(UnknownConvention)
     }
 }
 
@@ -228,7 +230,7 @@ mod tests {
                 let k = f64::from(k);
                 let r = rotation::exp(&Vector3::new((k * 1.3).sin() * 2.0, (k * 0.7).cos(), (k * 2.1).sin()));
                 let found = angles.decompose(&r);
-                for numbers in [found, angles.others(found)] {
+                for numbers in [found, angles.other_angles(found)] {
                     let apart = (angles.rotation(numbers) - r).norm();
                     assert!(apart < 1e-13, "{angles:?}: {apart:e}");
                     worst = worst.max(apart);
@@ -245,7 +247,7 @@ mod tests {
         }
         for bad in ["intrinsic_xx", "intrinsic_xxy", "extrinsic_xyzx", "intrinsic_abc", "euler", "extrinsic_"]
         {
-            assert_eq!(bad.parse::<Angles>(), Err(NoConvention), "{bad}");
+            assert_eq!(bad.parse::<Angles>(), Err(UnknownConvention), "{bad}");
         }
     }
 

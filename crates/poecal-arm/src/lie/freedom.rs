@@ -6,7 +6,7 @@
 /// ```
 /// use poecal_arm::lie::Freedom;
 /// assert_eq!((Freedom::PLACE.motions(), Freedom::plane(2).motions()), (&[0, 1, 2][..], &[2, 3, 4][..]));
-/// assert_eq!(Freedom::PLACE.with(Freedom::tilt(2)).count(), 5);
+/// assert_eq!(Freedom::PLACE.union(Freedom::tilt(2)).count(), 5);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Freedom(u8);
@@ -53,7 +53,7 @@ impl Freedom {
 
     /// All motions except the translation along an axis.
     #[must_use]
-    pub const fn across(axis: usize) -> Freedom {
+    pub const fn without_slide(axis: usize) -> Freedom {
         Freedom(Freedom::FRAME.0 & !(1 << axis))
     }
 
@@ -96,7 +96,7 @@ impl Freedom {
 
     /// These motions and others.
     #[must_use]
-    pub const fn with(self, other: Freedom) -> Freedom {
+    pub const fn union(self, other: Freedom) -> Freedom {
         Freedom(self.0 | other.0)
     }
 }

@@ -78,7 +78,7 @@ impl Pose {
 
     /// Distance of the origins of two poses (m), and the angle between their axes (rad).
     #[must_use]
-    pub fn apart(&self, other: &Self) -> (f64, f64) {
+    pub fn distance_and_angle(&self, other: &Self) -> (f64, f64) {
         let turn = rotation::log(&(self.rotation.transpose() * other.rotation));
         ((self.translation - other.translation).norm(), turn.norm())
     }
@@ -177,6 +177,6 @@ mod tests {
     #[test]
     fn poses_are_apart_by_a_distance_and_an_angle() {
         let moved = Pose::from_translation(Vector3::new(0.0, 0.3, 0.4));
-        assert_eq!(Pose::identity().apart(&moved), (0.5, 0.0));
+        assert_eq!(Pose::identity().distance_and_angle(&moved), (0.5, 0.0));
     }
 }

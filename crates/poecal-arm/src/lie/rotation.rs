@@ -105,7 +105,7 @@ pub fn shortest_arc(from: &Vector3<f64>, to: &Vector3<f64>) -> Matrix3<f64> {
     let cross = from.cross(to);
     let dot = from.dot(to);
     if dot < -1.0 + 1e-12 {
-        let side = perpendicular(from);
+        let side = perpendicular_to(from);
         return 2.0 * side * side.transpose() - Matrix3::identity();
     }
     let hat_cross = hat(&cross);
@@ -114,7 +114,7 @@ pub fn shortest_arc(from: &Vector3<f64>, to: &Vector3<f64>) -> Matrix3<f64> {
 
 /// A unit vector perpendicular to `a` (any length but zero): `a × e_k`, normalised, with the axis `e_k` of the smallest component of `a`.
 #[must_use]
-pub fn perpendicular(a: &Vector3<f64>) -> Vector3<f64> {
+pub fn perpendicular_to(a: &Vector3<f64>) -> Vector3<f64> {
     let other = match a.iamin() {
         0 => Vector3::x(),
         1 => Vector3::y(),

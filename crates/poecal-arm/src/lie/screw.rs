@@ -111,7 +111,7 @@ impl Screw {
 
     /// The screw in another frame, or moved as a body: `Ad_T ξ`, theory.md §3 (10).
     #[must_use]
-    pub fn transformed(&self, pose: &Pose) -> Self {
+    pub fn transform(&self, pose: &Pose) -> Self {
         if self.is_prismatic() {
             return Screw::prismatic(&(pose.rotation * self.v));
         }
@@ -153,14 +153,14 @@ mod tests {
         let pose = Pose::from_xyz_rpy([0.4, -1.0, 2.0], [0.3, -0.8, 2.5]);
         let screw = Screw::revolute(&Vector3::new(0.3, -0.5, 1.0), &Vector3::new(0.4, 2.0, -1.0));
         let direct = pose.transform(&screw.twist()).to_vector();
-        assert!((screw.transformed(&pose).twist().to_vector() - direct).norm() < 1e-14);
+        assert!((screw.transform(&pose).twist().to_vector() - direct).norm() < 1e-14);
     }
 
     #[test]
     fn smallest_motion_reaches_the_other_axis() {
         let a = Screw::revolute(&Vector3::new(0.3, -0.5, 1.0), &Vector3::new(0.4, 2.0, -1.0));
         let b = Screw::revolute(&Vector3::new(0.2, -0.6, 1.1), &Vector3::new(0.5, 1.9, -1.0));
-        let moved = a.transformed(&a.smallest_motion_to(&b, &Vector3::zeros()));
+        let moved = a.transform(&a.smallest_motion_to(&b, &Vector3::zeros()));
         assert!((moved.twist().to_vector() - b.twist().to_vector()).norm() < 1e-14);
     }
 }

@@ -64,7 +64,7 @@ impl Twist {
 
     /// `ad_ξ = [[ω̂, v̂], [0, ω̂]]` acting on `[v; ω]`: theory.md §1 (2).
     #[must_use]
-    pub fn ad(&self) -> Matrix6<f64> {
+    pub fn adjoint_matrix(&self) -> Matrix6<f64> {
         let mut ad = Matrix6::zeros();
         ad.fixed_view_mut::<3, 3>(0, 0).copy_from(&hat(&self.w));
         ad.fixed_view_mut::<3, 3>(0, 3).copy_from(&hat(&self.v));
@@ -84,7 +84,7 @@ impl Twist {
     pub fn left_jacobian(&self) -> Matrix6<f64> {
         let angle_squared = self.w.norm_squared();
         let (cosc, sincc) = (series::cosc(angle_squared), series::sincc(angle_squared));
-        let ad = self.ad();
+        let ad = self.adjoint_matrix();
         let ad2 = ad * ad;
         // On se(3) ad satisfies ad⁵ = -2θ² ad³ - θ⁴ ad; matching Σ adᵏ/(k+1)! determines the four coefficients.
         let (c, d) = series::left_jacobian(angle_squared);
@@ -96,7 +96,7 @@ impl Twist {
     /// `J_l(ξ)⁻¹ = I - ad/2 + b ad² + d ad⁴` for `|ω| < 2π`, with coefficients of the angle alone (theory.md §1 (4a)).
     #[must_use]
     pub fn inverse_left_jacobian(&self) -> Matrix6<f64> {
-        let ad = self.ad();
+        let ad = self.adjoint_matrix();
         let ad2 = ad * ad;
         let (b, d) = series::inverse_left_jacobian(self.w.norm_squared());
         Matrix6::identity() - ad * 0.5 + ad2 * b + ad2 * ad2 * d

@@ -2,17 +2,17 @@
 
 use nalgebra::Vector3;
 
-use super::frames::{Frames, Row, Vectors, add_times, cosines_and_sines, cross};
-use super::weights::{self, Bodies};
-use crate::chain::Chain;
+use super::frames::{FrameBatch, NumberBatch, VectorBatch, add_times, cosines_and_sines, cross};
+use super::weights::{self, NominalBodies};
+use crate::arm_state::{ArmState, MOST_JOINTS};
+use crate::chain::LinkChain;
 use crate::model::Wave;
-use crate::placed::{MOST_JOINTS, Placed};
-use crate::real::{Moment, Real, SMALL, Sum, is_plain, small};
+use crate::real_chain::{Moment, ReadingSum, RealChain, SMALL, is_plain, small_turn};
 use crate::terms::Term;
 
 /// Output of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Wanted {
+pub(crate) enum PassOutputs {
     /// Tips alone.
     Tips,
     /// Tips without the deflection under weights.
@@ -25,50 +25,50 @@ pub(crate) enum Wanted {
 
 /// Several configurations of an arm of up to `J` readings, its tips there, and their motions.
 #[derive(Clone, Debug)]
-pub(crate) struct Rows<const N: usize, const J: usize> {
-    pub(crate) q: [Row<N>; J],
-    pub(super) tip: Frames<N>,
+pub(crate) struct ConfigurationBatch<const N: usize, const J: usize> {
+    pub(crate) q: [NumberBatch<N>; J],
+    pub(super) tip: FrameBatch<N>,
     /// For each reading `velocity = v + w × tip` and `angular = w`, in the base.
-    v: [Vectors<N>; J],
-    w: [Vectors<N>; J],
-    found: [[Row<N>; 2]; J],
-    bodies: Bodies<N>,
+    v: [VectorBatch<N>; J],
+    w: [VectorBatch<N>; J],
+    found: [[NumberBatch<N>; 2]; J],
+    bodies: NominalBodies<N>,
 }
 
-impl<const J: usize> Rows<1, J> {
+impl<const J: usize> ConfigurationBatch<1, J> {
     /// One configuration.
     #[inline(always)]
-    pub(crate) fn at(q: &[f64; J]) -> Self {
-        let mut rows = Rows::new();
+    pub(crate) fn from_readings(q: &[f64; J]) -> Self {
+        let mut rows = ConfigurationBatch::new();
         rows.q.iter_mut().zip(q).for_each(|(to, from)| to[0] = *from);
         rows
     }
 
     /// The tip and its motions, after `place` has moved the arm.
     #[inline(always)]
-    pub(crate) fn placed(mut self, place: impl FnOnce(&mut Self)) -> Placed<J> {
+    pub(crate) fn place_with(mut self, place: impl FnOnce(&mut Self)) -> ArmState<J> {
         place(&mut self);
-        let vector = |of: &Vectors<1>| Vector3::new(of[0][0], of[1][0], of[2][0]);
-        Placed { v: self.v.each_ref().map(vector), w: self.w.each_ref().map(vector), tip: self.tip.pose(0) }
+        let vector = |of: &VectorBatch<1>| Vector3::new(of[0][0], of[1][0], of[2][0]);
+        ArmState { v: self.v.each_ref().map(vector), w: self.w.each_ref().map(vector), tip: self.tip.pose(0) }
     }
 }
 
-impl<const N: usize, const J: usize> Rows<N, J> {
+impl<const N: usize, const J: usize> ConfigurationBatch<N, J> {
     #[inline(always)]
     pub(crate) fn new() -> Self {
-        Rows {
+        ConfigurationBatch {
             q: [[0.0; N]; J],
-            tip: Frames::BASE,
+            tip: FrameBatch::BASE,
             v: [[[0.0; N]; 3]; J],
             w: [[[0.0; N]; 3]; J],
             found: [[[1.0; N], [0.0; N]]; J],
-            bodies: [Frames::BASE; MOST_JOINTS + 1],
+            bodies: [FrameBatch::BASE; MOST_JOINTS + 1],
         }
     }
 
     /// Motions of the tips' points with a reading, and their rotations.
     #[inline(always)]
-    pub(super) fn column(&self, reading: usize) -> [Vectors<N>; 2] {
+    pub(super) fn column(&self, reading: usize) -> [VectorBatch<N>; 2] {
         let w = self.w[reading];
         let mut moves = cross(&w, &self.tip.at);
         for (moves, v) in moves.iter_mut().zip(&self.v[reading]) {
@@ -81,8 +81,8 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     /// Moves an arm to these configurations: a chain of screws, or one whose joint values are more than their readings.
     #[inline(always)]
-    pub(super) fn place(&mut self, (chain, real): (&Chain, Option<&Real>), wanted: Wanted) {
-        if wanted == Wanted::Motions {
+    pub(super) fn place(&mut self, (chain, real): (&LinkChain, Option<&RealChain>), wanted: PassOutputs) {
+        if wanted == PassOutputs::Motions {
             self.v[..chain.len()].fill([[0.0; N]; 3]);
             self.w[..chain.len()].fill([[0.0; N]; 3]);
         }
@@ -93,7 +93,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
     }
 
     #[inline(always)]
-    pub(crate) fn place_rigid(&mut self, chain: &Chain, wanted: Wanted) {
+    pub(crate) fn place_rigid(&mut self, chain: &LinkChain, wanted: PassOutputs) {
         // For one configuration, vector instructions compute those of all joints, as many as there may be.
         let count = if N == 1 { J } else { chain.len() };
         let mut angles = self.q;
@@ -105,10 +105,10 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         for (found, angle) in self.found.iter_mut().zip(&angles).take(count) {
             *found = cosines_and_sines(angle);
         }
-        let mut frame = Frames::from_pose(&chain.start);
+        let mut frame = FrameBatch::from_pose(&chain.start);
         for (index, link) in chain.links.iter().enumerate().take(J) {
             frame.tilt(&link.origin, link.tilt);
-            if matches!(wanted, Wanted::Motions | Wanted::Steps) {
+            if matches!(wanted, PassOutputs::Motions | PassOutputs::Steps) {
                 [self.v[index], self.w[index]] = motion(&frame, link.slides);
             }
             if link.slides {
@@ -121,17 +121,17 @@ impl<const N: usize, const J: usize> Rows<N, J> {
     }
 
     #[inline(always)]
-    pub(crate) fn place_real(&mut self, real: &Real, wanted: Wanted) {
+    pub(crate) fn place_real(&mut self, real: &RealChain, wanted: PassOutputs) {
         if real.has_functions {
             for (found, q) in self.found.iter_mut().zip(&self.q[..real.readings]) {
                 *found = cosines_and_sines(q);
             }
         }
-        if wanted != Wanted::Unloaded && real.has_moments {
+        if wanted != PassOutputs::Unloaded && real.has_moments {
             weights::place(real, &self.q, &self.found, &mut self.bodies);
         }
-        let moves = matches!(wanted, Wanted::Motions | Wanted::Steps);
-        let mut frame = Frames::BASE;
+        let moves = matches!(wanted, PassOutputs::Motions | PassOutputs::Steps);
+        let mut frame = FrameBatch::BASE;
         for link in &real.links {
             frame.advance(&link.frame);
             let motion = motion(&frame, link.slides);
@@ -146,9 +146,9 @@ impl<const N: usize, const J: usize> Rows<N, J> {
                     self.moves(wave.reading, &motion, &slope);
                 }
             }
-            if let Some(moment) = link.own.moment.as_ref().filter(|_| wanted != Wanted::Unloaded) {
+            if let Some(moment) = link.own.moment.as_ref().filter(|_| wanted != PassOutputs::Unloaded) {
                 add(&mut value, &moment.values(real, &self.bodies));
-                if wanted == Wanted::Motions {
+                if wanted == PassOutputs::Motions {
                     self.moment_moves(moment, real, &motion, &[1.0; N]);
                 }
             }
@@ -170,7 +170,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
     }
 
     #[inline(always)]
-    fn add_linear(&self, of: &Sum, value: &mut Row<N>) {
+    fn add_linear(&self, of: &ReadingSum, value: &mut NumberBatch<N>) {
         for &(reading, factor) in &of.linear {
             for l in 0..N {
                 value[l] += factor * self.q[reading][l];
@@ -180,10 +180,10 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     /// Adds a wave; returns its derivative by its reading.
     #[inline(always)]
-    fn add_wave(&self, wave: &Wave, value: &mut Row<N>) -> Row<N> {
+    fn add_wave(&self, wave: &Wave, value: &mut NumberBatch<N>) -> NumberBatch<N> {
         let [c, s] = match wave.order {
             1.0 if is_plain(wave) => self.found[wave.reading],
-            2.0 if is_plain(wave) => doubled(&self.found[wave.reading]),
+            2.0 if is_plain(wave) => double_angles(&self.found[wave.reading]),
             order => {
                 let mut angles = self.q[wave.reading];
                 for angle in &mut angles {
@@ -204,14 +204,14 @@ impl<const N: usize, const J: usize> Rows<N, J> {
     #[inline(always)]
     fn add_curve(
         &self,
-        (term, coefficient, of): (Term, f64, &Sum),
-        real: &Real,
-        wanted: Wanted,
-        value: &mut Row<N>,
-    ) -> Row<N> {
+        (term, coefficient, of): (Term, f64, &ReadingSum),
+        real: &RealChain,
+        wanted: PassOutputs,
+        value: &mut NumberBatch<N>,
+    ) -> NumberBatch<N> {
         let mut x = [of.constant; N];
         self.add_linear(of, &mut x);
-        if let Some(moment) = of.moment.as_ref().filter(|_| wanted != Wanted::Unloaded) {
+        if let Some(moment) = of.moment.as_ref().filter(|_| wanted != PassOutputs::Unloaded) {
             add(&mut x, &moment.values(real, &self.bodies));
         }
         let mut slope = [0.0; N];
@@ -225,7 +225,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     /// Adds a joint's motion with the linear parts of a sum, by a share, to that of their readings.
     #[inline(always)]
-    fn linear_moves(&mut self, of: &Sum, motion: &[Vectors<N>; 2], share: &Row<N>) {
+    fn linear_moves(&mut self, of: &ReadingSum, motion: &[VectorBatch<N>; 2], share: &NumberBatch<N>) {
         for &(reading, factor) in &of.linear {
             let mut slope = *share;
             for it in &mut slope {
@@ -237,7 +237,13 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     /// The same addition with a moment.
     #[inline(always)]
-    fn moment_moves(&mut self, of: &Moment, real: &Real, motion: &[Vectors<N>; 2], share: &Row<N>) {
+    fn moment_moves(
+        &mut self,
+        of: &Moment,
+        real: &RealChain,
+        motion: &[VectorBatch<N>; 2],
+        share: &NumberBatch<N>,
+    ) {
         let (v, w) = (&mut self.v, &mut self.w);
         of.slopes(
             real,
@@ -256,7 +262,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     /// Adds a joint's motion to that of a reading.
     #[inline(always)]
-    fn moves(&mut self, reading: usize, [v, w]: &[Vectors<N>; 2], slope: &Row<N>) {
+    fn moves(&mut self, reading: usize, [v, w]: &[VectorBatch<N>; 2], slope: &NumberBatch<N>) {
         add_times(&mut self.v[reading], v, slope);
         add_times(&mut self.w[reading], w, slope);
     }
@@ -264,7 +270,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
 /// Adds numbers to others.
 #[inline(always)]
-fn add<const N: usize>(to: &mut Row<N>, of: &Row<N>) {
+fn add<const N: usize>(to: &mut NumberBatch<N>, of: &NumberBatch<N>) {
     for l in 0..N {
         to[l] += of[l];
     }
@@ -272,13 +278,13 @@ fn add<const N: usize>(to: &mut Row<N>, of: &Row<N>) {
 
 /// Motion of a joint along or about z of its frame.
 #[inline(always)]
-fn motion<const N: usize>(frame: &Frames<N>, slides: bool) -> [Vectors<N>; 2] {
+fn motion<const N: usize>(frame: &FrameBatch<N>, slides: bool) -> [VectorBatch<N>; 2] {
     if slides { [frame.z, [[0.0; N]; 3]] } else { [cross(&frame.at, &frame.z), frame.z] }
 }
 
 /// Cosines and sines of twice the angles.
 #[inline(always)]
-fn doubled<const N: usize>([c, s]: &[Row<N>; 2]) -> [Row<N>; 2] {
+fn double_angles<const N: usize>([c, s]: &[NumberBatch<N>; 2]) -> [NumberBatch<N>; 2] {
     let mut out = [[0.0; N]; 2];
     for l in 0..N {
         out[0][l] = c[l] * c[l] - s[l] * s[l];
@@ -289,10 +295,10 @@ fn doubled<const N: usize>([c, s]: &[Row<N>; 2]) -> [Row<N>; 2] {
 
 /// Cosines and sines; of small angles by fewer terms, as for one configuration alone.
 #[inline(always)]
-fn cosines_and_sines_of<const N: usize>(angles: &Row<N>) -> [Row<N>; 2] {
+fn cosines_and_sines_of<const N: usize>(angles: &NumberBatch<N>) -> [NumberBatch<N>; 2] {
     let mut out = [[0.0; N]; 2];
     for l in 0..N {
-        (out[0][l], out[1][l]) = small(angles[l]);
+        (out[0][l], out[1][l]) = small_turn(angles[l]);
     }
     if angles.iter().any(|it| it.abs() >= SMALL) {
         let whole = cosines_and_sines(angles);

@@ -5,13 +5,17 @@ use crate::lie::Pose;
 use crate::trig::cosine_and_sine;
 
 /// A number for each of several configurations.
-pub(crate) type Row<const N: usize> = [f64; N];
+pub(crate) type NumberBatch<const N: usize> = [f64; N];
 /// A vector for each of several configurations.
-pub(crate) type Vectors<const N: usize> = [Row<N>; 3];
+pub(crate) type VectorBatch<const N: usize> = [NumberBatch<N>; 3];
 
 /// Adds other vectors times a number of each.
 #[inline(always)]
-pub(crate) fn add_times<const N: usize>(to: &mut Vectors<N>, of: &Vectors<N>, times: &Row<N>) {
+pub(crate) fn add_times<const N: usize>(
+    to: &mut VectorBatch<N>,
+    of: &VectorBatch<N>,
+    times: &NumberBatch<N>,
+) {
     for l in 0..N {
         for k in 0..3 {
             to[k][l] += of[k][l] * times[l];
@@ -20,7 +24,7 @@ pub(crate) fn add_times<const N: usize>(to: &mut Vectors<N>, of: &Vectors<N>, ti
 }
 
 #[inline(always)]
-pub(crate) fn cross<const N: usize>(a: &Vectors<N>, b: &Vectors<N>) -> Vectors<N> {
+pub(crate) fn cross<const N: usize>(a: &VectorBatch<N>, b: &VectorBatch<N>) -> VectorBatch<N> {
     let mut out = [[0.0; N]; 3];
     for l in 0..N {
         out[0][l] = a[1][l] * b[2][l] - a[2][l] * b[1][l];
@@ -31,7 +35,7 @@ pub(crate) fn cross<const N: usize>(a: &Vectors<N>, b: &Vectors<N>) -> Vectors<N
 }
 
 #[inline(always)]
-pub(crate) fn dot<const N: usize>(a: &Vectors<N>, b: &Vectors<N>) -> Row<N> {
+pub(crate) fn dot<const N: usize>(a: &VectorBatch<N>, b: &VectorBatch<N>) -> NumberBatch<N> {
     let mut out = [0.0; N];
     for l in 0..N {
         out[l] = a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l];
@@ -41,7 +45,7 @@ pub(crate) fn dot<const N: usize>(a: &Vectors<N>, b: &Vectors<N>) -> Row<N> {
 
 /// `(cos, sin)` of angles.
 #[inline(always)]
-pub(crate) fn cosines_and_sines<const N: usize>(angles: &Row<N>) -> [Row<N>; 2] {
+pub(crate) fn cosines_and_sines<const N: usize>(angles: &NumberBatch<N>) -> [NumberBatch<N>; 2] {
     let (mut c, mut s) = ([0.0; N], [0.0; N]);
     for l in 0..N {
         (c[l], s[l]) = cosine_and_sine(angles[l]);
@@ -51,16 +55,16 @@ pub(crate) fn cosines_and_sines<const N: usize>(angles: &Row<N>) -> [Row<N>; 2] 
 
 /// A frame in several configurations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Frames<const N: usize> {
-    pub(crate) x: Vectors<N>,
-    pub(crate) y: Vectors<N>,
-    pub(crate) z: Vectors<N>,
-    pub(crate) at: Vectors<N>,
+pub(crate) struct FrameBatch<const N: usize> {
+    pub(crate) x: VectorBatch<N>,
+    pub(crate) y: VectorBatch<N>,
+    pub(crate) z: VectorBatch<N>,
+    pub(crate) at: VectorBatch<N>,
 }
 
-impl<const N: usize> Frames<N> {
+impl<const N: usize> FrameBatch<N> {
     /// The base.
-    pub(crate) const BASE: Self = Frames {
+    pub(crate) const BASE: Self = FrameBatch {
         x: [[1.0; N], [0.0; N], [0.0; N]],
         y: [[0.0; N], [1.0; N], [0.0; N]],
         z: [[0.0; N], [0.0; N], [1.0; N]],
@@ -72,7 +76,7 @@ impl<const N: usize> Frames<N> {
     pub(crate) fn from_pose(pose: &Pose) -> Self {
         let column = |k: usize| [0, 1, 2].map(|row| [pose.rotation[(row, k)]; N]);
         let at = [0, 1, 2].map(|row| [pose.translation[row]; N]);
-        Frames { x: column(0), y: column(1), z: column(2), at }
+        FrameBatch { x: column(0), y: column(1), z: column(2), at }
     }
 
     /// Changes them to frames whose origin is in their coordinates, and which are turned about x by an angle with this cosine and sine.
@@ -105,7 +109,7 @@ impl<const N: usize> Frames<N> {
 
     /// Turns them about their own z.
     #[inline(always)]
-    pub(crate) fn turn_by(&mut self, [c, s]: &[Row<N>; 2]) {
+    pub(crate) fn turn_by(&mut self, [c, s]: &[NumberBatch<N>; 2]) {
         for l in 0..N {
             for k in 0..3 {
                 let (x, y) = (self.x[k][l], self.y[k][l]);
@@ -117,14 +121,14 @@ impl<const N: usize> Frames<N> {
 
     /// Translates them along their own z.
     #[inline(always)]
-    pub(crate) fn slide(&mut self, by: &Row<N>) {
+    pub(crate) fn slide(&mut self, by: &NumberBatch<N>) {
         let z = self.z;
         add_times(&mut self.at, &z, by);
     }
 
     /// Directions or, with a share of the origin, positions in their coordinates.
     #[inline(always)]
-    pub(crate) fn act(&self, place: [f64; 3], share: f64) -> Vectors<N> {
+    pub(crate) fn act(&self, place: [f64; 3], share: f64) -> VectorBatch<N> {
         let mut out = [[0.0; N]; 3];
         for l in 0..N {
             for k in 0..3 {
@@ -138,7 +142,7 @@ impl<const N: usize> Frames<N> {
     /// The frame of one configuration.
     #[inline(always)]
     pub(crate) fn pose(&self, l: usize) -> Pose {
-        let column = |of: &Vectors<N>| nalgebra::Vector3::new(of[0][l], of[1][l], of[2][l]);
+        let column = |of: &VectorBatch<N>| nalgebra::Vector3::new(of[0][l], of[1][l], of[2][l]);
         let rotation = nalgebra::Matrix3::from_columns(&[column(&self.x), column(&self.y), column(&self.z)]);
         Pose::new(rotation, column(&self.at))
     }

@@ -1,27 +1,27 @@
 //! Rotation of a joint under weights in several configurations, and its derivatives.
 
-use super::frames::{Frames, Row, Vectors, add_times, cross, dot};
-use crate::placed::MOST_JOINTS;
-use crate::real::{Moment, Real};
+use super::frames::{FrameBatch, NumberBatch, VectorBatch, add_times, cross, dot};
+use crate::arm_state::MOST_JOINTS;
+use crate::real_chain::{Moment, RealChain};
 
 /// Bodies of the nominal arm, from the base on.
-pub(super) type Bodies<const N: usize> = [Frames<N>; MOST_JOINTS + 1];
+pub(super) type NominalBodies<const N: usize> = [FrameBatch<N>; MOST_JOINTS + 1];
 
 /// A vector that is the same in all configurations.
 #[inline(always)]
-fn same<const N: usize>(of: &nalgebra::Vector3<f64>) -> Vectors<N> {
+fn broadcast<const N: usize>(of: &nalgebra::Vector3<f64>) -> VectorBatch<N> {
     [[of.x; N], [of.y; N], [of.z; N]]
 }
 
 /// Moves the bodies of a nominal arm to readings, whose cosines and sines are known.
 #[inline(always)]
 pub(super) fn place<const N: usize>(
-    real: &Real,
-    q: &[Row<N>],
-    found: &[[Row<N>; 2]],
-    bodies: &mut Bodies<N>,
+    real: &RealChain,
+    q: &[NumberBatch<N>],
+    found: &[[NumberBatch<N>; 2]],
+    bodies: &mut NominalBodies<N>,
 ) {
-    let mut body = Frames::BASE;
+    let mut body = FrameBatch::BASE;
     bodies[0] = body;
     for ((frame, drawn), out) in real.drawing.iter().zip(&mut bodies[1..]) {
         body.advance(frame);
@@ -43,7 +43,10 @@ pub(super) fn place<const N: usize>(
 impl Moment {
     /// Sum of its weights, its axis, its origin, and the sum of weights times positions less that of the origin.
     #[inline(always)]
-    fn parts<const N: usize>(&self, bodies: &Bodies<N>) -> (f64, Vectors<N>, Vectors<N>, Vectors<N>) {
+    fn parts<const N: usize>(
+        &self,
+        bodies: &NominalBodies<N>,
+    ) -> (f64, VectorBatch<N>, VectorBatch<N>, VectorBatch<N>) {
         let size: f64 = self.weights.iter().map(|(_, size, _)| size).sum();
         let body = &bodies[self.after];
         let axis = body.act(self.direction.into(), 0.0);
@@ -62,8 +65,12 @@ impl Moment {
 
     /// Value of the joint by its weights.
     #[inline(always)]
-    pub(super) fn values<const N: usize>(&self, real: &Real, bodies: &Bodies<N>) -> Row<N> {
-        let gravity = same(&real.gravity);
+    pub(super) fn values<const N: usize>(
+        &self,
+        real: &RealChain,
+        bodies: &NominalBodies<N>,
+    ) -> NumberBatch<N> {
+        let gravity = broadcast(&real.gravity);
         let (size, axis, _, sum) = self.parts(bodies);
         if self.slides {
             let mut out = dot(&axis, &gravity);
@@ -83,11 +90,11 @@ impl Moment {
     #[inline(always)]
     pub(super) fn slopes<const N: usize>(
         &self,
-        real: &Real,
-        bodies: &Bodies<N>,
-        mut tell: impl FnMut(usize, &Row<N>),
+        real: &RealChain,
+        bodies: &NominalBodies<N>,
+        mut tell: impl FnMut(usize, &NumberBatch<N>),
     ) {
-        let gravity = same(&real.gravity);
+        let gravity = broadcast(&real.gravity);
         let (size, axis, origin, sum) = self.parts(bodies);
         let none = [[0.0; N]; 3];
         // m changes by its product with a change of S, and by that of this with the direction of a rotation of the axis.

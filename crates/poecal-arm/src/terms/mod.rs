@@ -12,7 +12,7 @@ use core::cmp::Ordering;
 use core::fmt;
 use core::str::FromStr;
 
-pub use table::{Argument, Function, GroupRow, TermGroup, TermKind, TermRow};
+pub use table::{GroupRow, TermArgument, TermFunction, TermGroup, TermKind, TermRow};
 
 /// Largest number of a harmonic, and of any other term.
 const MOST: [usize; 2] = [u8::MAX as usize, u16::MAX as usize];
@@ -23,9 +23,9 @@ const MOST: [usize; 2] = [u8::MAX as usize, u16::MAX as usize];
 /// ```
 /// use poecal_arm::{Term, TermKind};
 /// let second: Term = "sin2".parse().unwrap();
-/// assert_eq!((second, second.formula().as_str()), (TermKind::Sine.numbered(2), "sin(2 q)"));
+/// assert_eq!((second, second.formula().as_str()), (TermKind::Sine.with_number(2), "sin(2 q)"));
 /// assert_eq!(second.function(0.3), [0.6f64.sin(), 2.0 * 0.6f64.cos()]);
-/// assert_eq!(TermKind::Sag.at(0).to_string(), "sag1");
+/// assert_eq!(TermKind::Sag.with_index(0).to_string(), "sag1");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Term {
@@ -36,14 +36,14 @@ pub struct Term {
 impl TermKind {
     /// Term of this kind with a number: the order of a harmonic, or a count from 1. A kind without numbers has one term.
     #[must_use]
-    pub fn numbered(self, number: usize) -> Term {
+    pub fn with_number(self, number: usize) -> Term {
         Term { kind: self, number: if self.row().is_numbered() { number } else { 0 } }
     }
 
     /// The term of this kind by an index, which counts from 0.
     #[must_use]
-    pub fn at(self, index: usize) -> Term {
-        self.numbered(index + 1)
+    pub fn with_index(self, index: usize) -> Term {
+        self.with_number(index + 1)
     }
 }
 
@@ -54,9 +54,10 @@ impl Term {
     pub const RATIO: Term = Term { kind: TermKind::Ratio, number: 0 };
 
     /// Terms without a number that need only a joint's value.
-    pub fn plain() -> impl Iterator<Item = Term> {
-        let plain = |it: &Term| it.kind.row().argument <= Argument::OwnValue && !it.kind.row().is_numbered();
-        TermKind::ALL.into_iter().map(|kind| kind.numbered(0)).filter(plain)
+    pub fn unnumbered() -> impl Iterator<Item = Term> {
+        let plain =
+            |it: &Term| it.kind.row().argument <= TermArgument::OwnValue && !it.kind.row().is_numbered();
+        TermKind::ALL.into_iter().map(|kind| kind.with_number(0)).filter(plain)
     }
 
     /// Kind.
@@ -79,14 +80,14 @@ impl Term {
 
     /// Argument of its function.
     #[must_use]
-    pub const fn argument(self) -> Argument {
+    pub const fn argument(self) -> TermArgument {
         self.kind.row().argument
     }
 
     /// Function b of the argument, and the derivative.
     #[must_use]
     pub fn function(self, x: f64) -> [f64; 2] {
-        self.kind.row().function.at(x, self.number as f64)
+        self.kind.row().function.evaluate(x, self.number as f64)
     }
 
     /// Function in words and signs, with q for the joint's value.
@@ -105,8 +106,11 @@ impl Term {
     #[must_use]
     pub fn needs_gravity(self) -> bool {
         match self.argument() {
-            Argument::Masses | Argument::Weight | Argument::Payload => true,
-            Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => false,
+            TermArgument::Masses | TermArgument::Weight | TermArgument::Payload => true,
+            TermArgument::Nothing
+            | TermArgument::OwnValue
+            | TermArgument::OtherJoint
+            | TermArgument::Factor => false,
         }
     }
 
@@ -114,16 +118,22 @@ impl Term {
     #[must_use]
     pub fn is_of(self, joints: usize, factors: usize) -> bool {
         match self.argument() {
-            Argument::OtherJoint => self.index() < joints,
-            Argument::Factor | Argument::Payload => self.index() < factors,
-            Argument::Nothing | Argument::OwnValue | Argument::Masses | Argument::Weight => true,
+            TermArgument::OtherJoint => self.index() < joints,
+            TermArgument::Factor | TermArgument::Payload => self.index() < factors,
+            TermArgument::Nothing | TermArgument::OwnValue | TermArgument::Masses | TermArgument::Weight => {
+                true
+            }
         }
     }
 
     /// The same term with other indices of joints.
     #[must_use]
-    pub fn moved(self, index: impl Fn(usize) -> usize) -> Self {
-        if self.argument() == Argument::OtherJoint { self.kind.at(index(self.index())) } else { self }
+    pub fn reindex(self, index: impl Fn(usize) -> usize) -> Self {
+        if self.argument() == TermArgument::OtherJoint {
+            self.kind.with_index(index(self.index()))
+        } else {
+            self
+        }
     }
 
     /// Names of all terms as one pattern.
@@ -148,7 +158,7 @@ impl Term {
             } else {
                 ""
             };
-            names += &kind.numbered(1).to_string();
+            names += &kind.with_number(1).to_string();
             // Kinds of one argument have their numbers together.
             let is_followed = next.is_some_and(|it| it.is_numbered() && it.argument == kind.row().argument);
             names += if kind.row().is_numbered() && !is_followed { ", …" } else { "" };
@@ -187,10 +197,10 @@ impl FromStr for Term {
             let row = kind.row();
             let rest = name.strip_prefix(row.name)?;
             if !row.is_numbered() {
-                return rest.is_empty().then(|| kind.numbered(0));
+                return rest.is_empty().then(|| kind.with_number(0));
             }
-            let most = MOST[usize::from(row.argument != Argument::OwnValue)];
-            rest.parse().ok().filter(|number| (1..=most).contains(number)).map(|it| kind.numbered(it))
+            let most = MOST[usize::from(row.argument != TermArgument::OwnValue)];
+            rest.parse().ok().filter(|number| (1..=most).contains(number)).map(|it| kind.with_number(it))
         };
         let found = TermKind::ALL.into_iter().find_map(of);
         found.ok_or_else(|| alloc::format!("found the term `{name}`, expected {}", Term::names()))
@@ -221,10 +231,10 @@ mod tests {
         for (name, term) in [
             ("offset", Term::OFFSET),
             ("ratio", Term::RATIO),
-            ("sin2", TermKind::Sine.numbered(2)),
-            ("masses", TermKind::Masses.numbered(0)),
-            ("sag6", TermKind::Sag.at(5)),
-            ("coupled4", TermKind::Coupled.at(3)),
+            ("sin2", TermKind::Sine.with_number(2)),
+            ("masses", TermKind::Masses.with_number(0)),
+            ("sag6", TermKind::Sag.with_index(5)),
+            ("coupled4", TermKind::Coupled.with_index(3)),
         ] {
             assert_eq!((name.parse::<Term>(), term.to_string().as_str()), (Ok(term), name));
         }
@@ -237,7 +247,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_the_functions() {
         for kind in TermKind::ALL {
-            let term = kind.numbered(2);
+            let term = kind.with_number(2);
             for x in [-0.9, -0.01, 0.02, 0.7] {
                 let slope = (term.function(x + 1e-6)[0] - term.function(x - 1e-6)[0]) / 2e-6;
                 assert!((slope - term.function(x)[1]).abs() < 1e-7, "{term} at {x}");

@@ -35,7 +35,7 @@ macro_rules! table {
 
 /// Argument x of a term's function, and meaning of its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Argument {
+pub enum TermArgument {
     /// Nothing.
     Nothing,
     /// The joint's own value, for a compliant joint that of the joint to which it belongs (rad, m); a number is the order k of a harmonic.
@@ -54,7 +54,7 @@ pub enum Argument {
 
 /// A function b of an argument x.
 #[derive(Clone, Copy, Debug)]
-pub enum Function {
+pub enum TermFunction {
     /// 1.
     One,
     /// x.
@@ -67,16 +67,16 @@ pub enum Function {
     Other(fn(f64) -> [f64; 2]),
 }
 
-impl Function {
+impl TermFunction {
     /// The function of an argument and the term's number k, and its derivative by the argument.
     #[must_use]
-    pub fn at(self, x: f64, k: f64) -> [f64; 2] {
+    pub fn evaluate(self, x: f64, k: f64) -> [f64; 2] {
         match self {
-            Function::One => [1.0, 0.0],
-            Function::Identity => [x, 1.0],
-            Function::Sine => [(k * x).sin(), k * (k * x).cos()],
-            Function::Cosine => [(k * x).cos(), -k * (k * x).sin()],
-            Function::Other(function) => function(x),
+            TermFunction::One => [1.0, 0.0],
+            TermFunction::Identity => [x, 1.0],
+            TermFunction::Sine => [(k * x).sin(), k * (k * x).cos()],
+            TermFunction::Cosine => [(k * x).cos(), -k * (k * x).sin()],
+            TermFunction::Other(function) => function(x),
         }
     }
 }
@@ -89,9 +89,9 @@ pub struct TermRow {
     /// Function in words and signs, with q for the joint's value and `{}` for the number.
     pub formula: &'static str,
     /// Argument of its function.
-    pub argument: Argument,
+    pub argument: TermArgument,
     /// Function.
-    pub function: Function,
+    pub function: TermFunction,
     /// Standard deviation of the coefficient over robots, its prior, for a revolute joint and for a prismatic one.
     pub deviation: [f64; 2],
     /// Group among corrections: of a joint's own value, of a revolute compliant joint and of a prismatic one.
@@ -108,8 +108,8 @@ impl TermRow {
     /// True if its coefficient is a share of a joint's value, without unit; others are in the unit of the joint's value, rad or m.
     #[must_use]
     pub fn is_share(&self) -> bool {
-        matches!(self.argument, Argument::OwnValue | Argument::OtherJoint)
-            && matches!(self.function, Function::Identity)
+        matches!(self.argument, TermArgument::OwnValue | TermArgument::OtherJoint)
+            && matches!(self.function, TermFunction::Identity)
     }
 }
 
@@ -125,43 +125,43 @@ table! {
 /// inverted like the others.
 ///
 /// ```
-/// use poecal_arm::{Argument, TermKind};
+/// use poecal_arm::{TermArgument, TermKind};
 /// let row = TermKind::Sine.row();
-/// assert_eq!((row.name, row.argument, row.function.at(0.0, 2.0)), ("sin", Argument::OwnValue, [0.0, 2.0]));
+/// assert_eq!((row.name, row.argument, row.function.evaluate(0.0, 2.0)), ("sin", TermArgument::OwnValue, [0.0, 2.0]));
 /// ```
 pub enum TermKind: TermRow {
     /// Joint offset: the reading at which the joint is at zero (lou2009: Δθ). The prior is that of a remounted encoder: 5° or 20 mm.
     Offset = TermRow { name: "offset", formula: "1",
-        argument: Argument::Nothing, function: Function::One, deviation: [5f64.to_radians(), 0.02], groups: [None; 3] },
+        argument: TermArgument::Nothing, function: TermFunction::One, deviation: [5f64.to_radians(), 0.02], groups: [None; 3] },
     /// Error of a gear's ratio. 0.5 %: a belt, or a tooth more or less of a gear with two hundred.
     Ratio = TermRow { name: "ratio", formula: "q",
-        argument: Argument::OwnValue, function: Function::Identity, deviation: [5e-3; 2], groups: [Some(TermGroup::Ratio), None, None] },
+        argument: TermArgument::OwnValue, function: TermFunction::Identity, deviation: [5e-3; 2], groups: [Some(TermGroup::Ratio), None, None] },
     /// A harmonic of the joint's value, k periods a turn: eccentric gears and encoders; for a compliant joint the wobble of its joint's
     /// bearing. 0.1° or 0.2 mm are the largest that users of encoders report.
     Sine = TermRow { name: "sin", formula: "sin({} q)",
-        argument: Argument::OwnValue, function: Function::Sine, deviation: TENTH, groups: PERIODIC },
+        argument: TermArgument::OwnValue, function: TermFunction::Sine, deviation: TENTH, groups: PERIODIC },
     /// The same harmonic a quarter of a period later.
     Cosine = TermRow { name: "cos", formula: "cos({} q)",
-        argument: Argument::OwnValue, function: Function::Cosine, deviation: TENTH, groups: PERIODIC },
+        argument: TermArgument::OwnValue, function: TermFunction::Cosine, deviation: TENTH, groups: PERIODIC },
     /// Compliance under the robot's own weight, `Σ m z·((p - o) × ĝ)/Σ m ℓ` with the masses m at p, the axis z through o and the longest
     /// lever ℓ of each; for a prismatic joint `z·ĝ`.
     Masses = TermRow { name: "masses", formula: "the moment about the joint of the links' masses, over the largest",
-        argument: Argument::Masses, function: Function::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), None] },
+        argument: TermArgument::Masses, function: TermFunction::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), None] },
     /// Compliance under one weight, `z·((p - o) × ĝ)/ℓ` with the weight at p, the axis z through o and the longest lever ℓ of all weights of
     /// that joint; for a prismatic joint `z·ĝ`. A weight that the joint does not carry has no moment.
     Sag = TermRow { name: "sag", formula: "the moment about the joint of weight {}, over the largest",
-        argument: Argument::Weight, function: Function::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), Some(TermGroup::Shift)] },
+        argument: TermArgument::Weight, function: TermFunction::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), Some(TermGroup::Shift)] },
     /// Coupling: a joint that moves with another one, as in wrists with nested gears, and in parallel links. 2 %: the ratio of a last stage
     /// of gears.
     Coupled = TermRow { name: "coupled", formula: "the value of joint {}, counted from the base",
-        argument: Argument::OtherJoint, function: Function::Identity, deviation: [2e-2; 2], groups: [None; 3] },
+        argument: TermArgument::OtherJoint, function: TermFunction::Identity, deviation: [2e-2; 2], groups: [None; 3] },
     /// Another reading: a temperature, or half the backlash if the factor is the side from which the joint came, +1 or -1.
     Factor = TermRow { name: "factor", formula: "factor {} from its reference",
-        argument: Argument::Factor, function: Function::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Factors), None, None] },
+        argument: TermArgument::Factor, function: TermFunction::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Factors), None, None] },
     /// Compliance under a payload, `f z·((p - o) × ĝ)/ℓ` with the payload f at the position p of the last weight, axis and lever as of a sag.
     /// The payload is known, so the coefficient is an angle for each kilogram at full lever.
     Payload = TermRow { name: "payload", formula: "factor {} * the moment about the joint of a unit weight at the last link, over the largest",
-        argument: Argument::Payload, function: Function::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Payload), Some(TermGroup::Payload), None] },
+        argument: TermArgument::Payload, function: TermFunction::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Payload), Some(TermGroup::Payload), None] },
 }
 }
 

@@ -75,13 +75,13 @@ pub(crate) fn arm(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     if is_shoulder {
         // The same arm, held at its tip.
         home = home.inverse();
-        screws = screws.iter().rev().map(|screw| screw.transformed(&home)).collect();
+        screws = screws.iter().rev().map(|screw| screw.transform(&home)).collect();
     }
     let mut numbers = Numbers(2009);
     for screw in &mut screws {
         let at = Pose::from_translation(screw.nearest_point(&home.translation));
         let off = Pose::exp(&Twist::new(numbers.vector() * length_m, numbers.vector() * angle_rad));
-        *screw = screw.transformed(&(at * off * at.inverse()));
+        *screw = screw.transform(&(at * off * at.inverse()));
     }
     Arm::new(&screws, &home).unwrap()
 }
@@ -90,7 +90,7 @@ pub(crate) const SEVEN: [&str; 2] = ["seven axes, round wrist", "seven axes, off
 
 /// The same for an arm of seven axes, like collaborative robots: with a spherical shoulder, and a spherical wrist or one whose last axis
 /// is offset from the others.
-pub(crate) fn seven(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
+pub(crate) fn arm_of_seven(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     let (y, z) = (Vector3::y(), Vector3::z());
     let is_round = kind == SEVEN[0];
     let (axes, points) = if is_round {

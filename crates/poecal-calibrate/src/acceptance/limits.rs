@@ -69,7 +69,7 @@ impl AcceptedModel {
 
 /// Largest permitted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
+pub struct AcceptanceLimit {
     /// Limited statistic.
     pub statistic: AcceptedStatistic,
     /// Unit: the limit is for all measured quantities of this unit.
@@ -82,7 +82,7 @@ pub struct Limit {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcceptanceLimits {
     /// At least one; no two of one statistic and unit.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<AcceptanceLimit>,
     /// Which model.
     pub model: AcceptedModel,
 }
@@ -92,13 +92,14 @@ impl AcceptanceLimits {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if there are none, or two of one statistic and unit.
-    pub fn new(limits: Vec<Limit>, model: AcceptedModel) -> Result<Self> {
+    pub fn new(limits: Vec<AcceptanceLimit>, model: AcceptedModel) -> Result<Self> {
         if limits.is_empty() {
             return ErrorKind::Option
                 .refuse("found no limit to accept, expected at least one, like 0.2mm or max:0.5mm");
         }
         for (k, limit) in limits.iter().enumerate() {
-            let same = |other: &&Limit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
+            let same =
+                |other: &&AcceptanceLimit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
             if let Some(other) = limits[..k].iter().find(same) {
                 let [other, own] = [other, limit].map(|it| it.words());
                 return ErrorKind::Option.refuse(format!(
@@ -113,7 +114,7 @@ impl AcceptanceLimits {
     ///
     /// # Errors
     /// As [`AcceptanceLimits::new`]; [`ErrorKind::Option`] also if a model was named that has no limit to keep.
-    pub fn chosen(limits: Vec<Limit>, model: Option<AcceptedModel>) -> Result<Option<Self>> {
+    pub fn from_choice(limits: Vec<AcceptanceLimit>, model: Option<AcceptedModel>) -> Result<Option<Self>> {
         if !limits.is_empty() {
             return AcceptanceLimits::new(limits, model.unwrap_or_default()).map(Some);
         }
@@ -125,11 +126,11 @@ impl AcceptanceLimits {
     }
 }
 
-impl Limit {
+impl AcceptanceLimit {
     /// As it may be typed, to six digits: `max:0.5mm`.
     #[must_use]
     pub fn words(&self) -> String {
-        let shown = self.unit.shown(self.most);
+        let shown = self.unit.in_shown_unit(self.most);
         let shown: f64 = format!("{shown:.5e}").parse().unwrap_or(shown);
         format!("{}:{shown}{}", self.statistic.word(), self.unit.symbol())
     }

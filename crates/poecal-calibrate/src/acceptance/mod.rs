@@ -3,8 +3,8 @@
 mod bounds;
 mod limits;
 
-pub(crate) use bounds::{Bounded, Errors, MeasuredError, mean_square};
-pub use limits::{AcceptanceLimits, AcceptedModel, AcceptedStatistic, Limit};
+pub(crate) use bounds::{BoundedStatistic, ConfigurationErrors, MeasuredError, mean_square};
+pub use limits::{AcceptanceLimit, AcceptanceLimits, AcceptedModel, AcceptedStatistic};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -131,10 +131,16 @@ impl Acceptance {
 
 impl AcceptedLimit {
     /// A decided limit; numbers in metres or radians.
-    pub(crate) fn decided(limit: &Limit, quantity: Quantity, found: Bounded, counts: [usize; 2]) -> Self {
+    pub(crate) fn from_finding(
+        limit: &AcceptanceLimit,
+        quantity: Quantity,
+        found: BoundedStatistic,
+        counts: [usize; 2],
+    ) -> Self {
         let unit = quantity.unit();
-        let [limit_shown, value, from] = [limit.most, found.found, found.from].map(|it| unit.shown(it));
-        let to = found.to.map(|it| unit.shown(it));
+        let [limit_shown, value, from] =
+            [limit.most, found.found, found.from].map(|it| unit.in_shown_unit(it));
+        let to = found.to.map(|it| unit.in_shown_unit(it));
         AcceptedLimit {
             quantity: quantity.name().to_owned(),
             unit: unit.symbol().to_owned(),

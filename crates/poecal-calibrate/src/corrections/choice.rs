@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::left_out::LeftOutPart;
-use super::linear::Linear;
+use super::linear::LinearRows;
+use super::row_folds::FoldFit;
 use poecal_model::robot::{Sizes, TermGroup};
 
 /// Rounds of choosing each group's size in turn.
@@ -82,19 +82,19 @@ impl SizesReason {
 
 /// Choice of sizes, and all tried sizes.
 #[derive(Clone, Debug)]
-pub(crate) struct Choice {
+pub(crate) struct CorrectionChoice {
     pub(crate) sizes: Sizes,
     pub(crate) reason: SizesReason,
     pub(crate) tried: Vec<TriedSizes>,
 }
 
 /// Chooses sizes by leaving parts of the rows out. Without parts the small sizes are used, with very few configurations none.
-pub(crate) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usize) -> Choice {
+pub(crate) fn choose(linear: &LinearRows, parts: &[FoldFit], configurations: usize) -> CorrectionChoice {
     if configurations < FEWEST {
-        return Choice { sizes: Sizes::NONE, reason: SizesReason::TooFew, tried: Vec::new() };
+        return CorrectionChoice { sizes: Sizes::NONE, reason: SizesReason::TooFew, tried: Vec::new() };
     }
     if parts.is_empty() {
-        return Choice { sizes: Sizes::SMALL, reason: SizesReason::Small, tried: Vec::new() };
+        return CorrectionChoice { sizes: Sizes::SMALL, reason: SizesReason::Small, tried: Vec::new() };
     }
     let few = 1.0 / configurations as f64;
     let mut tried: Vec<TriedSizes> = Vec::new();
@@ -110,7 +110,7 @@ pub(crate) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
     let mut best = common;
     for _ in 0..SWEEPS {
         let before = best.sizes;
-        for (groups, sizes) in chosen().filter(|(groups, _)| linear.has_any(groups)) {
+        for (groups, sizes) in tried_sizes().filter(|(groups, _)| linear.has_any(groups)) {
             for &size in sizes {
                 let mut other = best.sizes;
                 groups.iter().for_each(|&group| other[group] = size);
@@ -135,11 +135,11 @@ pub(crate) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
         best = geometry;
     }
     let reason = if best.sizes == Sizes::NONE { SizesReason::NoBetter } else { SizesReason::Predict };
-    Choice { sizes: best.sizes, reason, tried }
+    CorrectionChoice { sizes: best.sizes, reason, tried }
 }
 
 /// Groups whose sizes are chosen in turn, with the tried sizes; the groups of gravity share one size.
-pub(crate) fn chosen() -> impl Iterator<Item = (&'static [TermGroup], &'static [f64])> {
+pub(crate) fn tried_sizes() -> impl Iterator<Item = (&'static [TermGroup], &'static [f64])> {
     static ALL: [TermGroup; TermGroup::ALL.len()] = TermGroup::ALL;
     let together = ALL.chunk_by(|_, next| next.row().tried.is_empty());
     together.map(|groups| (groups, groups.first().map_or(&[][..], |it| it.row().tried)))

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::effect::{Effects, JointEffect, JointErrorPart, JointErrors};
 use poecal_fit::parameters::Parameter;
-use poecal_fit::state::{Chain, Estimate, Linkage, RowError, Session, sample_rows};
+use poecal_fit::state::{Estimate, Linkage, RowChain, RowError, Session, sample_rows};
 use poecal_fit::uncertainty::Uncertainty;
 use poecal_model::measurement::{Noise, Quantity};
 use poecal_model::robot::{CorrectionModel, JointKind, Robot, Term, TermGroup};
@@ -22,7 +22,7 @@ const VAGUE: f64 = 1e-3;
 const CONFUSED: f64 = 0.8;
 
 /// A term at one row: its index among the unknowns of the covariance with the scale there, its coefficient and its function.
-struct TermAt {
+struct TermAtRow {
     place: Option<(usize, f64)>,
     coefficient: f64,
     basis: f64,
@@ -57,20 +57,20 @@ pub(crate) fn effects(
         let parts = gatherer.errors(joint, &rows, &residuals, &motions[joint], noise);
         errors.push(JointErrors { joint: name, slides, parts });
     }
-    let confused = gatherer.confused(&found);
+    let confused = gatherer.indistinguishable_pairs(&found);
     let mut each: Vec<JointEffect> = found.into_iter().map(|(effect, _)| effect).collect();
     each.sort_by(|a, b| b.effect_m.total_cmp(&a.effect_m));
     Effects { each, errors, confused }
 }
 
 /// Motion of the target by a joint, in the device's axes: of its position and of its orientation.
-type Motion = (Vector3<f64>, Vector3<f64>);
+type JointMotion = (Vector3<f64>, Vector3<f64>);
 
 /// Motion of the target by each joint and each compliant joint, row by row.
-fn joint_motions(session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Vec<Motion>> {
+fn joint_motions(session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Vec<JointMotion>> {
     let robot: &Robot = session.robot;
     let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let mut motions = vec![vec![(Vector3::zeros(), Vector3::zeros()); rows.len()]; robot.joints.len()];
     for (at, &row) in rows.iter().enumerate() {
         chain.evaluate(&linkage, session.packed, row as usize, session.observation(row));
@@ -90,7 +90,7 @@ fn joint_motions(session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Ve
 }
 
 /// Refers the functions of factors to their mean over all rows: a constant part belongs to geometry.
-fn about_their_mean(of_rows: &mut [Vec<Vec<TermAt>>]) {
+fn about_their_mean(of_rows: &mut [Vec<Vec<TermAtRow>>]) {
     let count = of_rows.len().max(1) as f64;
     let mut mean: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for of_row in &*of_rows {
@@ -110,7 +110,12 @@ fn about_their_mean(of_rows: &mut [Vec<Vec<TermAt>>]) {
 }
 
 /// Motion of a joint that explains most of the residuals of some rows, and its standard deviation.
-fn explained(some: &[usize], errors: &[RowError], motions: &[Motion], noise: Noise) -> (f64, f64) {
+fn explain_residuals(
+    some: &[usize],
+    errors: &[RowError],
+    motions: &[JointMotion],
+    noise: Noise,
+) -> (f64, f64) {
     let weigh = [Quantity::Position, Quantity::Rotation].map(|it| noise[it].powi(-2));
     let (mut along, mut information) = (0.0, 0.0);
     for &at in some {
@@ -170,8 +175,8 @@ impl<'a> Gatherer<'a> {
         found.into_values().collect()
     }
 
-    fn at(&self, terms: &[(usize, Term, f64)], row: u32) -> Vec<TermAt> {
-        let term = |&(joint, term, deviation): &(usize, Term, f64)| TermAt {
+    fn terms_at_row(&self, terms: &[(usize, Term, f64)], row: u32) -> Vec<TermAtRow> {
+        let term = |&(joint, term, deviation): &(usize, Term, f64)| TermAtRow {
             place: self.places.get(&(joint, term)).copied(),
             coefficient: self.estimate.coefficient(joint, term),
             basis: self.session.packed.basis(row as usize, None, joint, term),
@@ -186,12 +191,14 @@ impl<'a> Gatherer<'a> {
         (joint, group): (&str, TermGroup),
         terms: &[Vec<(usize, Term, f64)>],
         rows: &[u32],
-        motions: &[Vec<Motion>],
+        motions: &[Vec<JointMotion>],
     ) -> Option<(JointEffect, Vec<(usize, f64)>)> {
-        let value = |terms: &[TermAt]| terms.iter().map(|it| it.coefficient * it.basis).sum::<f64>();
+        let value = |terms: &[TermAtRow]| terms.iter().map(|it| it.coefficient * it.basis).sum::<f64>();
         // For compliant joints the vector of both turns is evaluated; the row with the largest one represents the effect.
-        let mut of_rows: Vec<Vec<Vec<TermAt>>> =
-            rows.iter().map(|&row| terms.iter().map(|terms| self.at(terms, row)).collect()).collect();
+        let mut of_rows: Vec<Vec<Vec<TermAtRow>>> = rows
+            .iter()
+            .map(|&row| terms.iter().map(|terms| self.terms_at_row(terms, row)).collect())
+            .collect();
         if group == TermGroup::Factors {
             about_their_mean(&mut of_rows);
         }
@@ -248,7 +255,7 @@ impl<'a> Gatherer<'a> {
         joint: usize,
         rows: &[u32],
         residuals: &[Vec<RowError>; 2],
-        motions: &[Motion],
+        motions: &[JointMotion],
         noise: Noise,
     ) -> Vec<JointErrorPart> {
         let value = |row: u32| self.session.packed.joint_values(row as usize)[joint];
@@ -274,7 +281,7 @@ impl<'a> Gatherer<'a> {
             }
             let terms = self.mean_of(&own, some.iter().map(|&at| rows[at]));
             let [(before, sigma), (after, _)] =
-                residuals.each_ref().map(|it| explained(&some, it, motions, noise));
+                residuals.each_ref().map(|it| explain_residuals(&some, it, motions, noise));
             // A joint error that the target does not show is not reported.
             let shows = !sigma.is_nan() && sigma <= VAGUE;
             shows.then_some(JointErrorPart { range, rows: some.len(), before, after, terms })
@@ -287,7 +294,7 @@ impl<'a> Gatherer<'a> {
         let count = rows.len() as f64;
         let mut mean = 0.0;
         let mut along: BTreeMap<usize, f64> = BTreeMap::new();
-        for it in rows.flat_map(|row| self.at(terms, row)) {
+        for it in rows.flat_map(|row| self.terms_at_row(terms, row)) {
             mean += it.coefficient * it.basis / count;
             if let Some((place, scale)) = it.place {
                 *along.entry(place).or_default() += it.basis / scale / count;
@@ -298,7 +305,7 @@ impl<'a> Gatherer<'a> {
     }
 
     /// Pairs of effects that the measurements do not distinguish.
-    fn confused(&self, found: &[(JointEffect, Vec<(usize, f64)>)]) -> Vec<String> {
+    fn indistinguishable_pairs(&self, found: &[(JointEffect, Vec<(usize, f64)>)]) -> Vec<String> {
         let mut confused = Vec::new();
         for (k, (one, a)) in found.iter().enumerate() {
             for (other, b) in &found[k + 1..] {

@@ -1,21 +1,21 @@
 //! The fit of screws and terms together.
 
-use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
-use super::context::{CorrectionContext, Sampled};
-use super::found::CorrectedFit;
+use super::choice::{CorrectionChoice, SizesReason, TriedSizes, choose, weight_of_prior};
+use super::context::{CorrectionContext, RowSample};
+use super::correction_fit::CorrectedFit;
 use super::gravity::of_no_use;
-use super::linear::between;
-use super::promise::uncertainty;
-use super::unknowns::{estimate, moving, priors, unknowns};
+use super::linear::draw_deviation;
+use super::predictive_covariance::uncertainty;
+use super::unknowns::{estimate, moving_joints, priors, unknowns};
 use crate::estimate_noise;
-use crate::run::Run;
+use crate::run::CalibrationRun;
 use crate::run::accuracy::model_accuracy;
-use crate::run::located::located;
-use crate::run::noise::{NoiseSource, stated};
-use crate::run::task::Task;
-use crate::steps::calibrated::CalibratedFit;
-use crate::steps::found::OngoingFit;
-use poecal_fit::state::{Estimate, Packed, RowError, Session};
+use crate::run::noise::{NoiseSource, merge_stated_noise};
+use crate::run::station_frames::locate_stations;
+use crate::run::task::FitTask;
+use crate::steps::calibrated_fit::CalibratedFit;
+use crate::steps::fit_progress::OngoingFit;
+use poecal_fit::state::{Estimate, PackedValues, RowError, Session};
 use poecal_model::measurement::{ByQuantity, Noise};
 use poecal_model::robot::{CorrectionModel, GravityDirection, JointTerm, Sizes};
 
@@ -30,9 +30,9 @@ const DECREMENT: f64 = 1e-2;
 
 /// Fits screws and terms together (theory.md §6, *Corrections*), with these sizes or with those that cross-validation chooses. Returns geometry alone
 /// if the fit of terms fails.
-pub(crate) fn corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> CorrectedFit {
+pub(crate) fn fit_corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> CorrectedFit {
     let context = CorrectionContext::new(geometry);
-    let moves = moving(&context.session, &context.rows);
+    let moves = moving_joints(&context.session, &context.rows);
     let is_found = geometry.run.options.gravity == GravityDirection::Found;
     let (gravity, doubt) = match geometry.run.options.gravity {
         GravityDirection::Known(direction) => (direction, None),
@@ -70,7 +70,7 @@ impl CorrectionContext<'_> {
     /// Chooses sizes, unless they are stated.
     fn choose_sizes(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> SizeChoice {
         let (mut noise, source) = (self.geometry.noise(), self.geometry.robust.fitted.noise_source);
-        let Some(Sampled { mut linear, parts, configurations }) = self.sampled(model, sizes) else {
+        let Some(RowSample { mut linear, parts, configurations }) = self.sample_rows(model, sizes) else {
             let (sizes, reason) =
                 sizes.map_or((Sizes::NONE, SizesReason::Undetermined), |sizes| (sizes, SizesReason::Given));
             let estimate = self.start(model);
@@ -93,15 +93,15 @@ impl CorrectionContext<'_> {
         } else if source != NoiseSource::Exact {
             variance = linear.weigh_priors(&usual);
         }
-        let whole = linear.whole();
+        let whole = linear.normal_information();
         let parts = linear.parts(&parts, &whole);
         let choice = match sizes {
-            Some(sizes) => Choice { sizes, reason: SizesReason::Given, tried: Vec::new() },
+            Some(sizes) => CorrectionChoice { sizes, reason: SizesReason::Given, tried: Vec::new() },
             None => choose(&linear, &parts, configurations),
         };
         let estimate = linear.solution(&choice.sizes, &whole).unwrap_or_else(|| self.start(model));
         let growth = if parts.is_empty() { 1.0 } else { linear.growth(&parts, &whole, &choice.sizes) };
-        let Choice { sizes, reason, tried } = choice;
+        let CorrectionChoice { sizes, reason, tried } = choice;
         SizeChoice { sizes, reason, tried, estimate, noise, variance, growth }
     }
 
@@ -117,7 +117,7 @@ impl CorrectionContext<'_> {
             return Ok(self.without_terms(model, possible, choice.clone()));
         }
         let (of_geometry, options) = (self.session, &self.geometry.run.options);
-        let packed = Packed::from_dataset(&model.robot, of_geometry.data);
+        let packed = PackedValues::from_dataset(&model.robot, of_geometry.data);
         let unknowns = unknowns(model, of_geometry.unknowns, &sizes);
         let session = self.session(model, &packed, &unknowns);
         let coefficient = |it: JointTerm| estimate.coefficient(it.joint, it.term);
@@ -130,9 +130,9 @@ impl CorrectionContext<'_> {
         near.solver.decrement = near.solver.decrement.max(DECREMENT);
         let prior = options.prior_with_terms(&session).with_terms(priors(model, &sizes));
         let weight = weight_of_prior(of_geometry.data.configurations(&self.rows).len()) * variance;
-        let task = Task { options: &near, ..self.task(session, (&prior, weight)) };
-        let (found, noise) = fitted(&task, start, noise, self.geometry);
-        let predicted = Predicted::new(self, &session, &found, noise);
+        let task = FitTask { options: &near, ..self.task(session, (&prior, weight)) };
+        let (found, noise) = refit_with_noise(&task, start, noise, self.geometry);
+        let predicted = FitPrediction::new(self, &session, &found, noise);
         // If rows are far from linear, the fit of terms may fail.
         if !self.is_no_worse(&predicted.training) {
             return Err(SizesReason::LedNowhere);
@@ -140,18 +140,18 @@ impl CorrectionContext<'_> {
         if reason != SizesReason::Given && self.is_worse_held_out(&predicted.held_out) {
             return Err(SizesReason::WorseHeldOut);
         }
-        let found = self.corrected(model, possible, choice.clone(), (packed, predicted, noise));
+        let found = self.complete_fit(model, possible, choice.clone(), (packed, predicted, noise));
         if found.uncertainty.is_none() { Err(SizesReason::LedNowhere) } else { Ok(found) }
     }
 
     /// Geometry alone, with the uncertainty due to terms that may be present.
     fn without_terms(&self, model: &CorrectionModel, possible: &Sizes, choice: SizeChoice) -> CorrectedFit {
         let (of_geometry, noise) = (self.session, self.geometry.noise());
-        let packed = Packed::from_dataset(&model.robot, of_geometry.data);
+        let packed = PackedValues::from_dataset(&model.robot, of_geometry.data);
         let unknowns = unknowns(model, of_geometry.unknowns, &Sizes::NONE);
         let session = self.session(model, &packed, &unknowns);
-        let predicted = Predicted::new(self, &session, &self.start(model), noise);
-        self.corrected(model, possible, choice, (packed, predicted, noise))
+        let predicted = FitPrediction::new(self, &session, &self.start(model), noise);
+        self.complete_fit(model, possible, choice, (packed, predicted, noise))
     }
 
     /// Geometry as an estimate of a model.
@@ -160,16 +160,17 @@ impl CorrectionContext<'_> {
     }
 
     /// A fit with its uncertainty by all terms that are possible.
-    fn corrected(
+    fn complete_fit(
         &self,
         model: &CorrectionModel,
         possible: &Sizes,
         choice: SizeChoice,
-        (packed, predicted, noise): (Packed, Predicted, Noise),
+        (packed, predicted, noise): (PackedValues, FitPrediction, Noise),
     ) -> CorrectedFit {
         let SizeChoice { sizes, reason, tried, variance, growth, .. } = choice;
-        let (of_geometry, Run { options, fit_rows, held_out_rows, .. }) = (self.session, &self.geometry.run);
-        let Predicted { estimate, training, held_out } = predicted;
+        let (of_geometry, CalibrationRun { options, fit_rows, held_out_rows, .. }) =
+            (self.session, &self.geometry.run);
+        let FitPrediction { estimate, training, held_out } = predicted;
         let every = unknowns(model, of_geometry.unknowns, possible);
         let session = self.session(model, &packed, &every);
         let weight = weight_of_prior(of_geometry.data.configurations(&self.rows).len());
@@ -201,23 +202,23 @@ impl CorrectionContext<'_> {
 }
 
 /// Predictions of a fit: its model with the frames of all stations, and its errors.
-struct Predicted {
+struct FitPrediction {
     estimate: Estimate,
     training: Vec<RowError>,
     held_out: Vec<RowError>,
 }
 
-impl Predicted {
+impl FitPrediction {
     fn new(context: &CorrectionContext<'_>, session: &Session<'_>, found: &Estimate, noise: Noise) -> Self {
-        let Run { fit_rows, held_out_rows, .. } = &context.geometry.run;
-        let estimate = located(session, &context.rows, found, noise).into_owned();
+        let CalibrationRun { fit_rows, held_out_rows, .. } = &context.geometry.run;
+        let estimate = locate_stations(session, &context.rows, found, noise).into_owned();
         let [training, held_out] = [fit_rows, held_out_rows].map(|rows| session.errors(rows, &estimate));
-        Predicted { estimate, training, held_out }
+        FitPrediction { estimate, training, held_out }
     }
 }
 
 /// Measured numbers of each quantity.
-fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
+fn numbers(task: &FitTask<'_>) -> ByQuantity<f64> {
     let mut counts: ByQuantity<f64> = ByQuantity::default();
     for &row in task.rows {
         let channels = task.session.observation(row).measurement.channels();
@@ -227,7 +228,12 @@ fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
 }
 
 /// The optimum with the noise re-estimated.
-fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &CalibratedFit<'_>) -> (Estimate, Noise) {
+fn refit_with_noise(
+    task: &FitTask<'_>,
+    start: Estimate,
+    noise: Noise,
+    of: &CalibratedFit<'_>,
+) -> (Estimate, Noise) {
     let (mut estimate, mut noise) = (start, noise);
     let counts = numbers(task);
     let all: f64 = counts.iter().map(|(_, count)| *count).sum();
@@ -243,9 +249,9 @@ fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &CalibratedFit<'_>
         };
         let better = ByQuantity::from_fn(|quantity| {
             let freedom = counts[quantity] * (1.0 - known / all).max(0.0);
-            between(of.noise()[quantity], better[quantity].powi(2) * freedom, freedom)
+            draw_deviation(of.noise()[quantity], better[quantity].powi(2) * freedom, freedom)
         });
-        let better = stated(task.options, better);
+        let better = merge_stated_noise(task.options, better);
         let change = better.iter().map(|(quantity, sigma)| (sigma / noise[quantity]).ln().abs());
         let is_settled = change.fold(0.0, f64::max) < SETTLED;
         noise = better;

@@ -3,10 +3,10 @@
 
 use nalgebra::Vector3;
 
-use crate::run::placed::{Tip, place_tip};
+use crate::run::calibrated_places::{UnmeasuredTip, place_tip};
 use poecal_arm::lie::Pose;
-use poecal_fit::state::{Estimate, Session, Stand, sample_rows};
-use poecal_model::offsets::Taught;
+use poecal_fit::state::{Estimate, InstrumentMount, Session, sample_rows};
+use poecal_model::offsets::TaughtFrames;
 use poecal_model::robot::{Body, Robot};
 
 /// Pairs of points that decide, and the fewest configurations.
@@ -17,20 +17,22 @@ const RADIAN_M: f64 = 0.01;
 
 /// A model of a session: the nominal robot of its kind, with the fitted estimate.
 #[derive(Clone, Copy)]
-pub(crate) struct Model<'a> {
+pub(crate) struct SessionModel<'a> {
     pub(crate) session: Session<'a>,
     pub(crate) estimate: &'a Estimate,
 }
 
-impl Model<'_> {
+impl SessionModel<'_> {
     /// Body and position (base frame, zero joint values) of everything measured or measuring that the robot moves.
-    fn moving(&self) -> Vec<(Body, Vector3<f64>)> {
+    fn moving_bodies(&self) -> Vec<(Body, Vector3<f64>)> {
         let Estimate { tree, base_from_target, .. } = self.estimate;
         let targets =
             tree.targets().iter().zip(base_from_target).map(|(body, pose)| (*body, pose.translation));
         let instruments = tree.instruments().iter().enumerate().filter_map(|(station, stand)| match stand {
-            Stand::On(body) => Some((*body, self.estimate.device_at_zero(station).inverse().translation)),
-            Stand::Target(_) => None,
+            InstrumentMount::On(body) => {
+                Some((*body, self.estimate.device_at_zero(station).inverse().translation))
+            }
+            InstrumentMount::Target(_) => None,
         });
         targets.chain(instruments).filter(|(body, _)| body.joint().is_some()).collect()
     }
@@ -38,16 +40,20 @@ impl Model<'_> {
     /// The robot with its tip as measured, or else as in the nominal model.
     fn robot(&self, frames: &[bool], move_tip: bool) -> Robot {
         let Session { robot, data, .. } = self.session;
-        place_tip(robot, data, frames, self.estimate, move_tip, Tip::Nominal).0
+        place_tip(robot, data, frames, self.estimate, move_tip, UnmeasuredTip::Nominal).0
     }
 }
 
 /// Motion of the base that brings a model's predictions in the base frame nearest to the calibrated model's, by least squares over all measured
 /// points and the tip; none if the base is known. Also returns the model's `base_from_tip` at zero, with that base and the best tool.
-pub(crate) fn frames([model, calibrated]: [Model<'_>; 2], rows: &[u32], move_tip: bool) -> (Pose, Pose) {
+pub(crate) fn frames(
+    [model, calibrated]: [SessionModel<'_>; 2],
+    rows: &[u32],
+    move_tip: bool,
+) -> (Pose, Pose) {
     let data = calibrated.session.data;
     let frames = data.frames(rows);
-    let both = [model, calibrated].map(|it| (it.robot(&frames, move_tip), it.moving()));
+    let both = [model, calibrated].map(|it| (it.robot(&frames, move_tip), it.moving_bodies()));
     let rows = sample_rows(rows, (POINTS / both[0].1.len().max(1)).max(FEWEST));
     let (mut tips, mut points) = (Vec::with_capacity(rows.len()), Vec::new());
     for row in rows {
@@ -61,6 +67,6 @@ pub(crate) fn frames([model, calibrated]: [Model<'_>; 2], rows: &[u32], move_tip
         tips.push((tip, other_tip));
         points.extend(places.into_iter().zip(other_places));
     }
-    let taught = Taught::with_points(&tips, &points, RADIAN_M, !calibrated.session.base_free());
+    let taught = TaughtFrames::with_points(&tips, &points, RADIAN_M, !calibrated.session.base_free());
     (taught.base, taught.tip(&both[0].0.home))
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::context::{CorrectionContext, Sampled};
+use super::context::{CorrectionContext, RowSample};
 use poecal_arm::lie::rotation;
 use poecal_model::robot::{CorrectionModel, Sizes};
 
@@ -23,7 +23,7 @@ impl CorrectionContext<'_> {
     pub(crate) fn gravity(&self, moves: &[bool], sizes: Sizes) -> (Vector3<f64>, Option<String>) {
         let along = |direction: &Vector3<f64>| {
             let model = CorrectionModel::new(&self.nominal, *direction, moves, self.extent(Some(sizes)));
-            self.sampled(&model.with_sizes(&sizes), Some(sizes))
+            self.sample_rows(&model.with_sizes(&sizes), Some(sizes))
         };
         let score = |direction: &Vector3<f64>| {
             along(direction).map_or(f64::INFINITY, |it| it.linear.logarithm_of_noise(&sizes))
@@ -39,7 +39,7 @@ impl CorrectionContext<'_> {
         }
         for step in TILTS {
             for _ in 0..MOST_TILTS {
-                let x = rotation::perpendicular(&best);
+                let x = rotation::perpendicular_to(&best);
                 let y = best.cross(&x);
                 let before = least;
                 for turn in [x, -x, y, -y] {
@@ -54,7 +54,7 @@ impl CorrectionContext<'_> {
                 }
             }
         }
-        let Some(Sampled { linear, configurations, .. }) = along(&best) else { return (down, None) };
+        let Some(RowSample { linear, configurations, .. }) = along(&best) else { return (down, None) };
         // Errors shared by the rows of a configuration count once.
         let numbers = linear.numbers();
         let counted = numbers.min(NUMBERS_OF_A_CONFIGURATION * configurations as f64);
@@ -64,7 +64,7 @@ impl CorrectionContext<'_> {
         }
         // The opposite direction leads to the same fit with all coefficients negated; joints deflect in the direction of their torque, so the sum of
         // coefficients is positive.
-        let given = linear.solution(&sizes, &linear.whole()).map(|found| {
+        let given = linear.solution(&sizes, &linear.normal_information()).map(|found| {
             let sags = found.terms.iter().filter(|it| it.term.needs_gravity());
             sags.map(|it| it.coefficient).sum::<f64>()
         });

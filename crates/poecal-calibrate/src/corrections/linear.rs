@@ -4,14 +4,14 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::matrices::{ROUNDING_OF_TERMS, cholesky, of_some, square};
-use super::modes::{Class, Columns, Mode, NEGLIGIBLE, modes};
-use crate::run::task::Task;
+use super::modes::{Class, ModeColumns, NEGLIGIBLE, TermMode, modes};
+use crate::run::task::FitTask;
 use poecal_fit::problem::{Layout, Problem};
 use poecal_fit::start::device_parameter;
 use poecal_fit::state::Estimate;
 use poecal_model::measurement::{Noise, Quantity};
 use poecal_model::robot::{CorrectionModel, Sizes, TermGroup};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::{linalg, threads};
 
 /// Rows that one thread differentiates at a time.
@@ -24,12 +24,12 @@ pub(crate) const LEAST_FREEDOM: f64 = 0.2;
 const FREEDOM_OF_GEOMETRY: f64 = 6.0;
 
 /// Rows as linear functions of the unknowns. Columns: the unknowns of geometry alone, then the modes, then device frames that are held in the fit.
-pub(crate) struct Linear {
+pub(crate) struct LinearRows {
     pub(crate) estimate: Estimate,
     pub(crate) layout: Layout,
     /// Number of columns of geometry, and the index of each in the layout.
     pub(crate) known: Vec<usize>,
-    pub(crate) modes: Vec<Mode>,
+    pub(crate) modes: Vec<TermMode>,
     /// Columns of device frames.
     pub(crate) devices: Vec<usize>,
     /// Step of each term's scaled unknown along each mode, and the indices of the terms.
@@ -42,22 +42,22 @@ pub(crate) struct Linear {
     pub(crate) residuals: DVector<f64>,
     pub(crate) quantities: Vec<Quantity>,
     /// Prior of the screws.
-    pub(crate) prior: Normal,
+    pub(crate) prior: NormalEquations,
     /// Weight of this prior and of the modes' priors.
     pub(crate) weight: f64,
 }
 
-impl Linear {
+impl LinearRows {
     /// The rows of a sample about an estimate. `weight` is the weight of the priors.
     pub(crate) fn new(
-        task: &Task<'_>,
+        task: &FitTask<'_>,
         model: &CorrectionModel,
         (estimate, noise): (&Estimate, Noise),
         (sample, weight): (&[u32], f64),
         classes: &[Class],
     ) -> Option<Self> {
         let session = &task.session;
-        let mut free = task.free(estimate);
+        let mut free = task.free_parameters(estimate);
         let first = session.data.first_station(sample);
         let held = session.base_free().then(|| device_parameter(session.data, first, sample));
         free.extend(held);
@@ -67,12 +67,12 @@ impl Linear {
             None => problem,
         };
         let layout = problem.layout().clone();
-        let columns = Columns::new(&layout, model, classes, held.map(|_| first));
+        let columns = ModeColumns::new(&layout, model, classes, held.map(|_| first));
         let sample = problem.rows().to_vec();
         let (starts, quantities) = numbers(&problem, &sample);
         let total = quantities.len();
         let (whole, residuals) = rows(&problem, estimate, &sample, &starts, total);
-        let mut prior = Normal::new(layout.dim());
+        let mut prior = NormalEquations::new(layout.dim());
         if let Some((of_screws, _)) = task.prior {
             of_screws.clone().without_terms().add(estimate, &layout, 1.0, &mut prior);
         }
@@ -91,7 +91,7 @@ impl Linear {
         jacobian.columns_mut(known.ncols() + own.ncols(), held.ncols()).copy_from(&held);
         let devices = columns.devices.iter().copied();
         let behind = known.ncols() + own.ncols();
-        Some(Linear {
+        Some(LinearRows {
             estimate: estimate.clone(),
             known: columns.known,
             devices: devices.chain(behind..behind + held.ncols()).collect(),
@@ -115,14 +115,14 @@ impl Linear {
     }
 
     /// Number of columns that are fitted: geometry and modes.
-    pub(crate) fn fitted(&self) -> usize {
+    pub(crate) fn fitted_columns(&self) -> usize {
         self.known.len() + self.modes.len()
     }
 
     /// Prior information of each mode of a size above 0 about which the rows are informative.
-    pub(crate) fn used(&self, sizes: &Sizes) -> Vec<(usize, f64)> {
-        let size = |mode: &Mode| sizes[mode.group];
-        let is_used = |mode: &Mode| mode.information * size(mode).powi(2) >= NEGLIGIBLE * self.weight;
+    pub(crate) fn used_modes(&self, sizes: &Sizes) -> Vec<(usize, f64)> {
+        let size = |mode: &TermMode| sizes[mode.group];
+        let is_used = |mode: &TermMode| mode.information * size(mode).powi(2) >= NEGLIGIBLE * self.weight;
         let all = self.modes.iter().enumerate().filter(|(_, mode)| is_used(mode));
         all.map(|(at, mode)| (at, size(mode).powi(-2))).collect()
     }
@@ -168,7 +168,7 @@ impl Linear {
         let mut present = self.quantities.clone();
         present.sort_unstable();
         present.dedup();
-        let used = self.used(sizes);
+        let used = self.used_modes(sizes);
         let columns: Vec<usize> =
             (0..self.known.len()).chain(used.iter().map(|(mode, _)| self.known.len() + mode)).collect();
         let n = columns.len();
@@ -204,7 +204,7 @@ impl Linear {
                 let determined = own.dot(&inverse) / (*factor * *factor);
                 let freedom = numbers - determined;
                 let deviation = if is_of_geometry {
-                    between(1.0, left, freedom)
+                    draw_deviation(1.0, left, freedom)
                 } else {
                     (left / freedom.max(LEAST_FREEDOM * numbers)).sqrt()
                 };
@@ -225,8 +225,8 @@ impl Linear {
     }
 
     /// Normal information of all rows.
-    pub(crate) fn whole(&self) -> (DMatrix<f64>, DVector<f64>) {
-        let rows = self.jacobian.columns(0, self.fitted());
+    pub(crate) fn normal_information(&self) -> (DMatrix<f64>, DVector<f64>) {
+        let rows = self.jacobian.columns(0, self.fitted_columns());
         (square(&rows.into_owned()), rows.tr_mul(&self.residuals))
     }
 
@@ -256,7 +256,7 @@ impl Linear {
         let (mut both, mut pull) = (gram.clone(), gradient.clone());
         self.add_prior(&mut both, &mut pull);
         let k = self.known.len();
-        let used = self.used(sizes);
+        let used = self.used_modes(sizes);
         let columns: Vec<usize> = (0..k).chain(used.iter().map(|(mode, _)| k + mode)).collect();
         let of_columns = |matrix: &DMatrix<f64>| matrix.select_rows(&columns).select_columns(&columns);
         let (mut both, pull) = (of_columns(&both), pull.select_rows(&columns));
@@ -265,7 +265,7 @@ impl Linear {
         let found = linalg::cholesky_solve(&factor, pull.as_slice());
         let n = columns.len();
         let determined = DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)).dot(&of_columns(gram));
-        let mut step = DVector::zeros(self.fitted());
+        let mut step = DVector::zeros(self.fitted_columns());
         columns.iter().zip(&found).for_each(|(&at, value)| step[at] = *value);
         Some((step, determined))
     }
@@ -329,7 +329,7 @@ fn rows(
 }
 
 /// Standard deviation from a sum of squares with these degrees of freedom, shrunk in logarithms towards that of geometry alone.
-pub(crate) fn between(of_geometry: f64, squares: f64, freedom: f64) -> f64 {
+pub(crate) fn draw_deviation(of_geometry: f64, squares: f64, freedom: f64) -> f64 {
     let freedom = freedom.max(f64::MIN_POSITIVE);
     let found = (squares / freedom).sqrt().max(f64::MIN_POSITIVE);
     let share = freedom / (freedom + FREEDOM_OF_GEOMETRY);

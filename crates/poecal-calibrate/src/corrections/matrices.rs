@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use poecal_numerics::linalg::{self, Factor};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Rounding of a matrix, as a share of its largest diagonal element.
 const ROUNDING: f64 = 1e-16;
@@ -13,9 +13,9 @@ pub(crate) const ROUNDING_OF_TERMS: f64 = 1e-13;
 const RIDGE: f64 = 1e-10;
 
 /// Normal information of some of the unknowns.
-pub(crate) fn of_some(normal: &Normal, places: &[usize]) -> Normal {
+pub(crate) fn of_some(normal: &NormalEquations, places: &[usize]) -> NormalEquations {
     let (n, k) = (normal.dim(), places.len());
-    let mut found = Normal::new(k);
+    let mut found = NormalEquations::new(k);
     for (i, &a) in places.iter().enumerate() {
         found.gradient[i] = normal.gradient[a];
         for (j, &b) in places.iter().enumerate() {
@@ -46,7 +46,7 @@ pub(crate) fn of_geometry(mut matrix: DMatrix<f64>) -> Option<Factor> {
 }
 
 /// `A⁻¹ B` from the factor of A, by one product.
-pub(crate) fn solved(factor: &Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn solve_factored(factor: &Factor, right: &DMatrix<f64>) -> DMatrix<f64> {
     let n = right.nrows();
     DMatrix::from_column_slice(n, n, &linalg::inverse(factor)) * right
 }

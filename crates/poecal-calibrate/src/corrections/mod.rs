@@ -6,27 +6,27 @@
 
 mod choice;
 mod context;
+mod correction_fit;
+mod degradation;
 mod effect;
 mod effects;
 mod fit;
-mod found;
 mod frames;
 mod gravity;
-mod left_out;
 mod linear;
 mod matrices;
 mod modes;
-mod promise;
-mod suspects;
+mod predictive_covariance;
+mod row_folds;
+mod suspected_rows;
 mod unknowns;
-mod worse;
 
 pub(crate) use choice::weight_of_prior;
 pub use choice::{SizesReason, TriedSizes};
+pub use correction_fit::{CorrectedFit, Correction};
 pub use effect::{Effects, JointEffect, JointErrorPart, JointErrors};
-pub(crate) use fit::corrected;
-pub use found::{CorrectedFit, Correction};
+pub(crate) use fit::fit_corrected;
 pub use linear::whitened_rows;
-pub(crate) use matrices::{ROUNDING_OF_TERMS, cholesky, solved};
+pub(crate) use matrices::{ROUNDING_OF_TERMS, cholesky, solve_factored};
 pub(crate) use unknowns::priors;
 pub use unknowns::unknowns;

@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::matrices::{of_geometry, solved, square};
-use poecal_fit::parameters::Subject;
+use super::matrices::{of_geometry, solve_factored, square};
+use poecal_fit::parameters::ParameterSubject;
 use poecal_fit::problem::Layout;
 use poecal_model::robot::{CorrectionModel, TermGroup};
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Information of a mode, as a share of its prior's, below which it stays at its prior value.
 pub(crate) const NEGLIGIBLE: f64 = 0.1;
@@ -17,7 +17,7 @@ pub(crate) type Class = (&'static [TermGroup], f64);
 
 /// A combination of terms of groups with one size: its coefficient has their prior.
 #[derive(Clone, Copy)]
-pub(crate) struct Mode {
+pub(crate) struct TermMode {
     /// A group of its class.
     pub(crate) group: TermGroup,
     /// Information of all rows about it, with geometry free.
@@ -25,7 +25,7 @@ pub(crate) struct Mode {
 }
 
 /// Subjects of the columns of a layout.
-pub(crate) struct Columns {
+pub(crate) struct ModeColumns {
     pub(crate) known: Vec<usize>,
     /// Indices among the known ones.
     pub(crate) devices: Vec<usize>,
@@ -42,7 +42,7 @@ pub(crate) struct TermColumn {
     pub(crate) unit: f64,
 }
 
-impl Columns {
+impl ModeColumns {
     pub(crate) fn new(
         layout: &Layout,
         model: &CorrectionModel,
@@ -63,28 +63,30 @@ impl Columns {
                 continue;
             }
             match parameter.model().subject() {
-                Subject::Instrument(station) if Some(station) == held_station => {
+                ParameterSubject::Instrument(station) if Some(station) == held_station => {
                     held.extend(places.iter().map(at));
                 }
-                Subject::Instrument(_) | Subject::Range(_) | Subject::Clock(_) => {
+                ParameterSubject::Instrument(_) | ParameterSubject::Range(_) | ParameterSubject::Clock(_) => {
                     devices.extend(known.len()..known.len() + places.len());
                     known.extend(places.iter().map(at));
                 }
-                Subject::Joint(_) | Subject::Target(_) => known.extend(places.iter().map(at)),
+                ParameterSubject::Joint(_) | ParameterSubject::Target(_) => {
+                    known.extend(places.iter().map(at))
+                }
             }
         }
-        Columns { known, devices, held, terms }
+        ModeColumns { known, devices, held, terms }
     }
 }
 
 /// Rotates the terms of each class, whose coefficients share one size, into directions of independent information. The prior is unchanged by it, and
 /// directions without information are left out.
 pub(crate) fn modes(
-    columns: &Columns,
+    columns: &ModeColumns,
     classes: &[Class],
     (known, terms): (&DMatrix<f64>, &DMatrix<f64>),
-    (prior, weight): (&Normal, f64),
-) -> Option<(Vec<Mode>, DMatrix<f64>)> {
+    (prior, weight): (&NormalEquations, f64),
+) -> Option<(Vec<TermMode>, DMatrix<f64>)> {
     let k = columns.known.len();
     let mut gram = square(known);
     for i in 0..k {
@@ -94,8 +96,8 @@ pub(crate) fn modes(
     }
     let factor = of_geometry(gram)?;
     let mixed = known.transpose() * terms;
-    let whole = square(terms) - mixed.transpose() * solved(&factor, &mixed);
-    let (mut modes, mut turns): (Vec<Mode>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
+    let whole = square(terms) - mixed.transpose() * solve_factored(&factor, &mixed);
+    let (mut modes, mut turns): (Vec<TermMode>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
     for (class, (groups, largest)) in classes.iter().enumerate() {
         let Some(&group) = groups.first() else { continue };
         let own: Vec<usize> =
@@ -109,7 +111,7 @@ pub(crate) fn modes(
             }
             let mut turn = DVector::zeros(columns.terms.len());
             own.iter().zip(vectors.column(at).iter()).for_each(|(&place, value)| turn[place] = *value);
-            modes.push(Mode { group, information });
+            modes.push(TermMode { group, information });
             turns.push(turn);
         }
     }

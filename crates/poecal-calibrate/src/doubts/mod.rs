@@ -1,9 +1,9 @@
 //! Signs of mistakes in the input. A fit can absorb them, a registration cannot.
 
-pub(crate) mod blame;
+pub(crate) mod diagnostics;
+pub(crate) mod fault_explanation;
 pub(crate) mod noise_doubts;
-pub(crate) mod one_zero;
-pub(crate) mod signs;
+pub(crate) mod single_offset;
 pub(crate) mod suspicion;
 
 use super::{DeviceFrameKnowledge, ModelAccuracy};

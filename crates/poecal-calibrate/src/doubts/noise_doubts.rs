@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::run::noise::ROUNDING;
-use poecal_fit::uncertainty::{Part, Remainder};
+use poecal_fit::uncertainty::{KindVariance, ResidualVariance};
 use poecal_model::measurement::Quantity;
 
 /// Contradiction between residuals and stated noise.
@@ -21,7 +21,7 @@ const LESS: f64 = 4.0;
 const IN_TIME: f64 = 0.5;
 
 /// Contradictions between residuals and stated noise, and correlation in time (theory.md §9 (41)).
-pub(crate) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<NoiseDoubt> {
+pub(crate) fn noise_doubts(remainder: &ResidualVariance, lag_one: Option<f64>) -> Vec<NoiseDoubt> {
     let parts = remainder.parts.iter();
     let mut doubts: Vec<NoiseDoubt> = parts.filter_map(|(quantity, part)| of_part(quantity, part)).collect();
     if let Some(correlation) = lag_one.filter(|correlation| *correlation > IN_TIME) {
@@ -36,7 +36,7 @@ pub(crate) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<N
     doubts
 }
 
-fn of_part(quantity: Quantity, part: &Part) -> Option<NoiseDoubt> {
+fn of_part(quantity: Quantity, part: &KindVariance) -> Option<NoiseDoubt> {
     let (what, name) = (quantity.name(), quantity.unit().symbol());
     let (variance, square) = part.stated?;
     let (stated, ratio) = (variance.sqrt(), square.sqrt());
@@ -45,7 +45,7 @@ fn of_part(quantity: Quantity, part: &Part) -> Option<NoiseDoubt> {
         return None;
     }
     let number = |value: f64| {
-        let value = quantity.unit().shown(value);
+        let value = quantity.unit().in_shown_unit(value);
         let digits = (2 - value.log10().floor() as i32).clamp(0, 9) as usize;
         format!("{value:.digits$}")
     };

@@ -1,11 +1,11 @@
 //! Corrections of joints, and suspicious joints: one whose correction alone explains most deviations, or whose position the residuals follow.
 
-use super::blame::{Blame, Part, blame};
-use poecal_fit::uncertainty::{Pattern, Uncertainty, View, strongest_pattern};
+use super::fault_explanation::{FaultExplanation, JointPart, blame};
+use poecal_fit::uncertainty::{FitView, JointPattern, Uncertainty, strongest_pattern};
 use poecal_model::offsets::JointChange;
 use poecal_model::robot::JointKind;
-use poecal_numerics::error::shown;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::error::shorten_name;
+use poecal_numerics::solve::NormalEquations;
 
 /// A joint's correction.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,24 +49,26 @@ const SIGMAS: f64 = 3.0;
 
 /// Suspicions of each joint, in words (theory.md §9 (44)).
 pub(crate) fn suspicions(
-    view: &View<'_>,
-    normal: &Normal,
+    view: &FitView<'_>,
+    normal: &NormalEquations,
     joints: &[JointCorrection],
     uncertainty: Option<&Uncertainty>,
 ) -> Vec<Option<String>> {
     let robot = view.session.robot;
     let mut words: Vec<Vec<String>> = vec![Vec::new(); joints.len()];
-    let found = uncertainty.map(|it| off(&blame(view, it), joints)).unwrap_or_default();
-    let told =
-        |it: &Blame| Some((it.joint, robot.joints.get(it.joint)?, part_words(it, joints.get(it.joint)?)));
+    let found = uncertainty.map(|it| faulty_parts(&blame(view, it), joints)).unwrap_or_default();
+    let told = |it: &FaultExplanation| {
+        Some((it.joint, robot.joints.get(it.joint)?, part_words(it, joints.get(it.joint)?)))
+    };
     match found.iter().filter_map(told).collect::<Vec<_>>().as_slice() {
         [] => {}
         [(joint, _, own)] => words[*joint].push(own.clone()),
         several => {
             for (joint, _, own) in several {
                 let others = several.iter().filter(|it| it.0 != *joint);
-                let others: Vec<String> =
-                    others.map(|(_, other, words)| format!("{}: {words}", shown(&other.name))).collect();
+                let others: Vec<String> = others
+                    .map(|(_, other, words)| format!("{}: {words}", shorten_name(&other.name)))
+                    .collect();
                 words[*joint].push(format!(
                     "{own}, or else {}; the measurements do not tell which",
                     others.join(", or else ")
@@ -81,17 +83,17 @@ pub(crate) fn suspicions(
 }
 
 /// The faulty part, if there is one, and a part of another joint that explains the deviations about as well.
-fn off(all: &[Blame], joints: &[JointCorrection]) -> Vec<Blame> {
-    let counts = |it: &&Blame| {
+fn faulty_parts(all: &[FaultExplanation], joints: &[JointCorrection]) -> Vec<FaultExplanation> {
+    let counts = |it: &&FaultExplanation| {
         let Some(JointChange { kind, sigma_offset, sigma_tilt, sigma_shift, .. }) =
             joints.get(it.joint).map(|joint| &joint.change)
         else {
             return false;
         };
         let (sigma, is_length) = match it.part {
-            Part::Zero => (sigma_offset, *kind == JointKind::Prismatic),
-            Part::Tilt => (sigma_tilt, false),
-            Part::Shift => (sigma_shift, true),
+            JointPart::Zero => (sigma_offset, *kind == JointKind::Prismatic),
+            JointPart::Tilt => (sigma_tilt, false),
+            JointPart::Shift => (sigma_shift, true),
         };
         let least = if is_length { LEAST_M } else { LEAST_RAD };
         sigma.is_some_and(|sigma| it.size > least.max(SIGMAS * sigma))
@@ -109,12 +111,12 @@ fn off(all: &[Blame], joints: &[JointCorrection]) -> Vec<Blame> {
 }
 
 /// Description of a faulty part, with the joint's correction.
-fn part_words(found: &Blame, correction: &JointCorrection) -> String {
+fn part_words(found: &FaultExplanation, correction: &JointCorrection) -> String {
     let change = &correction.change;
     let (what, own, words) = match found.part {
-        Part::Zero => ("zero is off", change.offset.map_or(0.0, f64::abs), change.offset_words()),
-        Part::Tilt => ("axis is tilted", change.tilt.norm(), change.tilt_words()),
-        Part::Shift => ("axis is shifted", change.shift.norm(), change.shift_words()),
+        JointPart::Zero => ("zero is off", change.offset.map_or(0.0, f64::abs), change.offset_words()),
+        JointPart::Tilt => ("axis is tilted", change.tilt.norm(), change.tilt_words()),
+        JointPart::Shift => ("axis is shifted", change.shift.norm(), change.shift_words()),
     };
     // A part that offsets can explain counts as offset, of other joints too.
     if own < 0.5 * found.size {
@@ -123,7 +125,7 @@ fn part_words(found: &Blame, correction: &JointCorrection) -> String {
     format!("its {what} by more than others are ({words})")
 }
 
-fn pattern_words(pattern: &Pattern, kind: JointKind) -> String {
+fn pattern_words(pattern: &JointPattern, kind: JointKind) -> String {
     let (size, parts) = match kind {
         JointKind::Revolute => (format!("{:.3} mrad", 1e3 * pattern.rms), "gear, bearing, encoder or sag"),
         JointKind::Prismatic => (format!("{:.3} mm", 1e3 * pattern.rms), "scale, spindle or guide"),

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::told::EventKind;
+use super::event_reports::EventKind;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
@@ -68,14 +68,14 @@ impl FromStr for RepairLimits {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        Ok(Self::with(&text.split(',').map(str::parse).collect::<Result<Vec<RepairLimit>>>()?))
+        Ok(Self::with_overrides(&text.split(',').map(str::parse).collect::<Result<Vec<RepairLimit>>>()?))
     }
 }
 
 impl RepairLimits {
     /// The default limits, with these in their place.
     #[must_use]
-    pub fn with(others: &[RepairLimit]) -> Self {
+    pub fn with_overrides(others: &[RepairLimit]) -> Self {
         let mut limits = Self::default();
         for RepairLimit { thing, most } in others {
             match *thing {
@@ -88,7 +88,7 @@ impl RepairLimits {
     }
 
     /// The limit of this kind in words, if the size (metres and radians) exceeds it; `radian_m` metres count for a radian.
-    pub(crate) fn exceeded(
+    pub(crate) fn exceeded_limit(
         &self,
         kind: EventKind,
         (size_m, size_rad): (f64, f64),
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn turns_count_as_arcs() {
         let limits = RepairLimits::default();
-        let is_beyond = |kind, m, rad| limits.exceeded(kind, (m, rad), 0.3).is_some();
+        let is_beyond = |kind, m, rad| limits.exceeded_limit(kind, (m, rad), 0.3).is_some();
         assert!(is_beyond(EventKind::Device, 0.06, 0.0) && !is_beyond(EventKind::Device, 0.04, 0.05));
         assert!(is_beyond(EventKind::Drift, 0.0, 0.2) && !is_beyond(EventKind::Rows, 1.0, 1.0));
         assert!(is_beyond(EventKind::Nest, 0.021, 0.0) && is_beyond(EventKind::Target, 0.0, 0.1));

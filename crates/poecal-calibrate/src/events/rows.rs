@@ -4,17 +4,17 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::hypotheses::{Columns, hypotheses};
+use super::hypotheses::{HypothesisColumns, hypotheses};
 use crate::corrections::{CorrectedFit, priors, unknowns, weight_of_prior, whitened_rows};
-use crate::run::task::Task;
-use crate::steps::calibrated::CalibratedFit;
+use crate::run::task::FitTask;
+use crate::steps::calibrated_fit::CalibratedFit;
 use poecal_fit::parameters::Parameter;
 use poecal_fit::problem::Problem;
 use poecal_fit::state::{Session, sample_rows};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Sizes;
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Most measured numbers: with fewer an event still shows, and its position is determined to a few rows.
 const MOST_NUMBERS: usize = 6000;
@@ -26,7 +26,7 @@ const LEAST_FREEDOM: f64 = 0.2;
 const RIDGE: f64 = 1e-12;
 
 /// Rows of a session about the optimum of a corrected model.
-pub(crate) struct Rows {
+pub(crate) struct SessionRows {
     pub(crate) rows: Vec<u32>,
     /// Start index of each row's numbers.
     pub(crate) starts: Vec<usize>,
@@ -39,7 +39,7 @@ pub(crate) struct Rows {
     /// Information and gradient of the priors.
     prior: (DMatrix<f64>, DVector<f64>),
     /// Hypotheses, with their derivatives.
-    pub(crate) columns: Vec<Columns>,
+    pub(crate) columns: Vec<HypothesisColumns>,
 }
 
 /// The optimum of weighted rows.
@@ -53,7 +53,7 @@ pub(crate) struct Optimum {
     pub(crate) freedom: f64,
 }
 
-impl Rows {
+impl SessionRows {
     /// The rows of a session with its corrected model; `None` if this determines nothing.
     pub(crate) fn new(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Self> {
         let (session, options) = (fit.session(), &fit.run.options);
@@ -65,8 +65,8 @@ impl Rows {
         let all: usize = rows.iter().map(numbers).sum();
         let rows = sample_rows(rows, rows.len() * MOST_NUMBERS / all.max(MOST_NUMBERS));
         let prior = options.prior_with_terms(&session).with_terms(priors(&found.model, &sizes));
-        let task = Task { session, rows: &rows, weights: None, prior: None, options };
-        let mut free: Vec<Parameter> = task.free(&found.estimate);
+        let task = FitTask { session, rows: &rows, weights: None, prior: None, options };
+        let mut free: Vec<Parameter> = task.free_parameters(&found.estimate);
         let fitted = free.len();
         let all = hypotheses(&session, found, &rows, &mut free);
         let problem = Problem::new(session, rows.clone(), free, found.noise);
@@ -74,7 +74,7 @@ impl Rows {
         let places: Vec<Vec<(usize, f64)>> = layout.parameters().map(|(_, places)| places.to_vec()).collect();
         let of_fit: Vec<usize> = places.get(..fitted)?.iter().flatten().map(|(place, _)| *place).collect();
         let (starts, jacobian, residual) = whitened_rows(&problem, &found.estimate, &rows);
-        let mut believed = Normal::new(layout.dim());
+        let mut believed = NormalEquations::new(layout.dim());
         prior.add(&found.estimate, layout, 1.0, &mut believed);
         let n = layout.dim();
         let runs = runs(data, &rows);
@@ -88,7 +88,7 @@ impl Rows {
         let columns = all.into_iter().map(|it| it.columns(&jacobian, &places, &rows, &session));
         let columns = columns.collect();
         let fitted = jacobian.select_columns(&of_fit);
-        Some(Rows { rows, starts, runs, fitted, residual, prior: (gram, pull), columns })
+        Some(SessionRows { rows, starts, runs, fitted, residual, prior: (gram, pull), columns })
     }
 
     /// The numbers of a run.
@@ -122,7 +122,7 @@ impl Rows {
     }
 
     /// Correlation of the numbers of a run along a step: the variance of its size by runs, over that by numbers; at least 1.
-    pub(crate) fn shared(&self, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
+    pub(crate) fn shared_variance(&self, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
         let mut weighted = moved.clone();
         for (run, weight) in self.runs.iter().zip(weights) {
             self.numbers(run).for_each(|at| weighted[at] *= *weight);

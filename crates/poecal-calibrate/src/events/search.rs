@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::early::early;
-use super::hypotheses::{Columns, Moved};
-use super::rows::{Optimum, Rows};
-use super::wrong::without_wrong;
+use super::hypotheses::{HypothesisColumns, MovedPart};
+use super::rows::{Optimum, SessionRows};
+use super::unsettled_readings::describe_early_readings;
+use super::wrong_configurations::without_wrong;
 use crate::corrections::CorrectedFit;
-use crate::steps::calibrated::CalibratedFit;
+use crate::steps::calibrated_fit::CalibratedFit;
 use poecal_model::measurement::Dataset;
 use poecal_numerics::linalg;
 
@@ -28,8 +28,8 @@ const BLOCK: usize = 3;
 
 /// A step.
 #[derive(Clone, Debug)]
-pub(crate) struct Step {
-    pub(crate) moved: Moved,
+pub(crate) struct SearchStep {
+    pub(crate) moved: MovedPart,
     /// First row after the step; for a drift the first row of all.
     pub(crate) first: u32,
     /// Its unknowns, metres and radians, and marks of those that are angles.
@@ -42,23 +42,23 @@ pub(crate) struct Step {
     /// Gain less the gain that its unknowns have on any rows: hypotheses are compared by it.
     score: f64,
     /// Subject and relative gain of the second-best hypothesis of another kind.
-    pub(crate) other: Option<(Moved, f64)>,
+    pub(crate) other: Option<(MovedPart, f64)>,
 }
 
 /// Findings of a search.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Shown {
+pub(crate) struct SearchFindings {
     /// Rows of wrong configurations.
     pub(crate) wrong: Vec<u32>,
     /// An evident step.
-    pub(crate) step: Option<Step>,
+    pub(crate) step: Option<SearchStep>,
     /// Statement about readings that were early in every configuration, if nothing else was found.
     pub(crate) early: Option<String>,
 }
 
 /// Searches a session, its rows in the order measured, by its corrected model.
-pub(crate) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Shown> {
-    let rows = Rows::new(fit, found, rows)?;
+pub(crate) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<SearchFindings> {
+    let rows = SessionRows::new(fit, found, rows)?;
     let data = &*fit.run.data;
     if rows.runs.len() < FEWEST {
         return None;
@@ -69,21 +69,24 @@ pub(crate) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]
     }
     let is_wrong: Vec<bool> = weights.iter().map(|weight| *weight == 0.0).collect();
     // Several in a row may be right, and an object before or after them moved.
-    let single: Vec<f64> = isolated(&is_wrong).into_iter().map(|it| f64::from(u8::from(!it))).collect();
+    let single: Vec<f64> = isolated_rows(&is_wrong).into_iter().map(|it| f64::from(u8::from(!it))).collect();
     let optimum = if single == weights { optimum } else { rows.optimum(&single)? };
-    let step = evident(&rows, &optimum, &single, data);
+    let step = best_evident_step(&rows, &optimum, &single, data);
     let of_rows = |wrong: &[bool]| -> Vec<u32> {
         let own = rows.runs.iter().zip(wrong).filter(|(_, wrong)| **wrong);
         own.flat_map(|(run, _)| rows.rows[run.clone()].to_vec()).collect()
     };
-    let wrong = if step.is_some() { isolated(&is_wrong) } else { is_wrong };
+    let wrong = if step.is_some() { isolated_rows(&is_wrong) } else { is_wrong };
     let wrong = of_rows(&wrong);
-    let early = step.is_none().then(|| early(&rows, &optimum, &single, data, &fit.run.robot)).flatten();
-    Some(Shown { wrong, step, early })
+    let early = step
+        .is_none()
+        .then(|| describe_early_readings(&rows, &optimum, &single, data, &fit.run.robot))
+        .flatten();
+    Some(SearchFindings { wrong, step, early })
 }
 
 /// Wrong runs that are not part of a series of wrong runs.
-fn isolated(wrong: &[bool]) -> Vec<bool> {
+fn isolated_rows(wrong: &[bool]) -> Vec<bool> {
     let mut found = wrong.to_vec();
     let mut at = 0;
     for block in wrong.chunk_by(|a, b| a == b) {
@@ -96,10 +99,16 @@ fn isolated(wrong: &[bool]) -> Vec<bool> {
 }
 
 /// The best step of all hypotheses, if it is evident.
-fn evident(rows: &Rows, optimum: &Optimum, weights: &[f64], data: &Dataset) -> Option<Step> {
+fn best_evident_step(
+    rows: &SessionRows,
+    optimum: &Optimum,
+    weights: &[f64],
+    data: &Dataset,
+) -> Option<SearchStep> {
     let time: Vec<usize> = (0..rows.runs.len()).collect();
-    let along = |order: &[usize], columns: &Columns| strongest(rows, optimum, weights, columns, order);
-    let all: Vec<(usize, Step)> = rows
+    let along =
+        |order: &[usize], columns: &HypothesisColumns| strongest_step(rows, optimum, weights, columns, order);
+    let all: Vec<(usize, SearchStep)> = rows
         .columns
         .iter()
         .enumerate()
@@ -122,27 +131,32 @@ fn evident(rows: &Rows, optimum: &Optimum, weights: &[f64], data: &Dataset) -> O
     }
     let others = all.iter().filter(|(at, _)| at != best).map(|(_, it)| (it.moved, it.score));
     let other = others.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(moved, score)| (moved, step.score - score));
-    Some(Step { other, ..step.clone() })
+    Some(SearchStep { other, ..step.clone() })
 }
 
 /// The runs that see a hypothesis, in an order, with their shares of its step; for a drift the position in time, from -1/2 to 1/2.
-fn shares(rows: &Rows, weights: &[f64], columns: &Columns, order: &[usize]) -> Vec<(usize, f64)> {
+fn shares(
+    rows: &SessionRows,
+    weights: &[f64],
+    columns: &HypothesisColumns,
+    order: &[usize],
+) -> Vec<(usize, f64)> {
     let sees = |at: usize| weights[at] > 0.0 && rows.runs[at].clone().any(|row| columns.sees[row]);
     let seen: Vec<usize> = order.iter().copied().filter(|&at| sees(at)).collect();
-    let is_drift = matches!(columns.moved, Moved::Drift(_));
+    let is_drift = matches!(columns.moved, MovedPart::Drift(_));
     let last = (seen.len().max(2) - 1) as f64;
     let share = |place: usize| if is_drift { place as f64 / last - 0.5 } else { 1.0 };
     seen.into_iter().enumerate().map(|(place, at)| (at, share(place))).collect()
 }
 
 /// The step along an order of the runs that explains most; for a drift, the drift.
-fn strongest(
-    rows: &Rows,
+fn strongest_step(
+    rows: &SessionRows,
     optimum: &Optimum,
     weights: &[f64],
-    columns: &Columns,
+    columns: &HypothesisColumns,
     order: &[usize],
-) -> Option<Step> {
+) -> Option<SearchStep> {
     let (p, k) = (optimum.whitened.ncols(), columns.of.ncols());
     let far = columns.turns.iter().map(|turns| if *turns { FAR_RAD } else { FAR_M });
     let prior: Vec<f64> = far.map(|far| optimum.variance / (far * far)).collect();
@@ -158,7 +172,7 @@ fn strongest(
         gram += own.tr_mul(&own);
         mixed += optimum.whitened.rows(begin, n).tr_mul(&own);
         pull += own.tr_mul(&optimum.residual.rows(begin, n));
-        let is_drift = matches!(columns.moved, Moved::Drift(_));
+        let is_drift = matches!(columns.moved, MovedPart::Drift(_));
         let after = seen.len() - place;
         let counts = if is_drift { place == 0 } else { after.min(place) >= FEWEST_BESIDE };
         if !counts {
@@ -166,7 +180,7 @@ fn strongest(
         }
         let mut left = &gram - mixed.tr_mul(&mixed);
         prior.iter().enumerate().for_each(|(at, prior)| left[(at, at)] += prior);
-        let Some(step) = linalg::solved(left, &pull) else { continue };
+        let Some(step) = linalg::solve_symmetric(left, &pull) else { continue };
         let gain = step.dot(&pull) / optimum.variance;
         if best.as_ref().is_none_or(|best| gain > best.1) {
             best = Some((place, gain, step));
@@ -180,10 +194,10 @@ fn strongest(
         moved.rows_mut(numbers.start, numbers.len()).copy_from(&of_step);
     }
     let leaves = (1.0 - gain / optimum.freedom.max(1.0)).max(0.0).sqrt();
-    let gain = gain / rows.shared(optimum, weights, &moved);
+    let gain = gain / rows.shared_variance(optimum, weights, &moved);
     let first = *rows.rows.get(rows.runs.get(seen.get(place)?.0)?.start)?;
     let size = step.iter().copied().collect();
     let score = gain - k as f64 * (rows.runs.len() as f64).ln();
     let (moved, turns) = (columns.moved, columns.turns.clone());
-    Some(Step { moved, first, size, turns, gain, leaves, score, other: None })
+    Some(SearchStep { moved, first, size, turns, gain, leaves, score, other: None })
 }

@@ -16,12 +16,12 @@ const GROSS: f64 = 0.05;
 const GROSS_M: f64 = 0.02;
 
 /// A row as messages name it.
-fn named(row: &TestRow) -> &str {
+fn row_name(row: &TestRow) -> &str {
     &row.place
 }
 
 fn refuse<T>(row: &TestRow, message: &str) -> Result<T> {
-    ErrorKind::Measurement.refuse(format!("{}: {message}", named(row)))
+    ErrorKind::Measurement.refuse(format!("{}: {message}", row_name(row)))
 }
 
 /// Refuses rows of which no figure can be computed; else warns of what is missing, a sentence each.
@@ -29,9 +29,9 @@ fn refuse<T>(row: &TestRow, message: &str) -> Result<T> {
 /// # Errors
 /// [`ErrorKind::Measurement`], with the row.
 pub(super) fn check(cells: &PoseCells<'_>) -> Result<Vec<String>> {
-    mixed(cells)?;
+    refuse_mixed_conditions(cells)?;
     for cell in cells.base.iter().chain(&cells.others) {
-        doubled(cell)?;
+        refuse_doubled_rows(cell)?;
         commands(cell)?;
     }
     for cell in cells.base.iter().chain(&cells.others) {
@@ -47,8 +47,8 @@ pub(super) fn check(cells: &PoseCells<'_>) -> Result<Vec<String>> {
             };
         }
     }
-    misplaced(cells)?;
-    Ok(missing(cells))
+    refuse_misplaced_rows(cells)?;
+    Ok(list_missing_rows(cells))
 }
 
 fn cycles(count: usize) -> String {
@@ -56,7 +56,7 @@ fn cycles(count: usize) -> String {
 }
 
 /// Two speeds or loads in one figure.
-fn mixed(cells: &PoseCells<'_>) -> Result<()> {
+fn refuse_mixed_conditions(cells: &PoseCells<'_>) -> Result<()> {
     for word in ["speed", "payload"] {
         let of = |it: &TestLabels| if word == "speed" { it.speed.clone() } else { it.payload.clone() };
         let mut rows = cells.base.iter().flat_map(|it| &it.rows);
@@ -68,7 +68,7 @@ fn mixed(cells: &PoseCells<'_>) -> Result<()> {
                 "found the {word} {} beside {} of {}, expected one {word} in all rows: test each {word} by a file of its own",
                 shown(&of(&other.labels)),
                 shown(&own),
-                named(first)
+                row_name(first)
             );
             return refuse(other, &message);
         }
@@ -77,7 +77,7 @@ fn mixed(cells: &PoseCells<'_>) -> Result<()> {
 }
 
 /// Two rows of one pose in one cycle.
-fn doubled(cell: &PoseCell<'_>) -> Result<()> {
+fn refuse_doubled_rows(cell: &PoseCell<'_>) -> Result<()> {
     for (k, row) in cell.rows.iter().enumerate() {
         let same = |it: &&&TestRow| !row.labels.cycle.is_empty() && it.labels.cycle == row.labels.cycle;
         if let Some(first) = cell.rows[..k].iter().find(same) {
@@ -85,7 +85,7 @@ fn doubled(cell: &PoseCell<'_>) -> Result<()> {
                 "found pose {} in cycle {} a second time, after {}, expected it once: remove one row, or correct its cycle",
                 cell.pose,
                 row.labels.cycle,
-                named(first)
+                row_name(first)
             );
             return refuse(row, &message);
         }
@@ -105,7 +105,7 @@ fn commands(cell: &PoseCell<'_>) -> Result<()> {
                 "found pose {} commanded {:.3} mm from its command of {}, expected one command for each pose: correct the name of the pose, or the command",
                 cell.pose,
                 1e3 * apart_m(row),
-                named(first)
+                row_name(first)
             );
             refuse(row, &message)
         }
@@ -113,7 +113,7 @@ fn commands(cell: &PoseCell<'_>) -> Result<()> {
 }
 
 /// Rows that were measured far from the others of their pose.
-fn misplaced(cells: &PoseCells<'_>) -> Result<()> {
+fn refuse_misplaced_rows(cells: &PoseCells<'_>) -> Result<()> {
     let middles: Vec<(Vector3<f64>, f64)> = cells.base.iter().map(PoseCell::middle).collect();
     for (at, cell) in cells.base.iter().enumerate() {
         let (middle, scatter) = middles[at];
@@ -134,7 +134,7 @@ fn misplaced(cells: &PoseCells<'_>) -> Result<()> {
         };
         let partner = cells.base[other].rows.iter().find(|it| off(it) < distance(other).max(limit));
         let exchanged = match partner {
-            Some(partner) => format!("exchange it with {}", named(partner)),
+            Some(partner) => format!("exchange it with {}", row_name(partner)),
             None => "correct its pose".to_owned(),
         };
         let message = format!(
@@ -151,7 +151,7 @@ fn misplaced(cells: &PoseCells<'_>) -> Result<()> {
 }
 
 /// Missing rows, a sentence each.
-fn missing(cells: &PoseCells<'_>) -> Vec<String> {
+fn list_missing_rows(cells: &PoseCells<'_>) -> Vec<String> {
     let mut said = Vec::new();
     let most = cells.base.iter().map(PoseCell::count).max().unwrap_or(0);
     let mut all: Vec<&str> = Vec::new();
@@ -164,7 +164,7 @@ fn missing(cells: &PoseCells<'_>) -> Vec<String> {
     for cell in &cells.base {
         let has = |cycle: &&&str| cell.rows.iter().any(|row| row.labels.cycle == ***cycle);
         let lacks: Vec<&str> = all.iter().filter(|it| !has(it)).copied().collect();
-        let place = cell.rows.last().map_or("", |row| named(row));
+        let place = cell.rows.last().map_or("", |row| row_name(row));
         if !lacks.is_empty() {
             let words = if lacks.len() == 1 { "cycle" } else { "cycles" };
             said.push(format!(
@@ -188,12 +188,12 @@ fn missing(cells: &PoseCells<'_>) -> Vec<String> {
             cycles(fewest)
         ));
     }
-    said.extend(cells.base.iter().filter_map(copied));
+    said.extend(cells.base.iter().filter_map(describe_copied_rows));
     said
 }
 
 /// Two rows of a pose with the same digits.
-fn copied(cell: &PoseCell<'_>) -> Option<String> {
+fn describe_copied_rows(cell: &PoseCell<'_>) -> Option<String> {
     let pair = cell.rows.iter().enumerate().find_map(|(k, row)| {
         let first = cell.rows[..k].iter().find(|it| it.position_m == row.position_m)?;
         Some((first, row))
@@ -201,8 +201,8 @@ fn copied(cell: &PoseCell<'_>) -> Option<String> {
     let (first, row) = pair?;
     Some(format!(
         "{}: found the position of {} to the last digit, expected scatter: remove the row if it is a copy, which makes RP too small",
-        named(row),
-        named(first)
+        row_name(row),
+        row_name(first)
     ))
 }
 
@@ -211,7 +211,7 @@ fn copied(cell: &PoseCell<'_>) -> Option<String> {
 /// # Errors
 /// [`ErrorKind::Measurement`], with the pose.
 pub(super) fn refuse_gross(cells: &[PoseCell<'_>], errors: &[Vector3<f64>], is_fitted: bool) -> Result<()> {
-    let places: Vec<Vector3<f64>> = cells.iter().map(|it| it.commanded().translation).collect();
+    let places: Vec<Vector3<f64>> = cells.iter().map(|it| it.commanded_pose().translation).collect();
     let apart = |a: &Vector3<f64>| places.iter().map(|b| (a - b).norm()).fold(0.0, f64::max);
     let size = places.iter().map(apart).fold(0.0, f64::max);
     let worst = errors.iter().enumerate().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));

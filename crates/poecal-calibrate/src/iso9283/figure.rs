@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::{Decision, Limit};
+use crate::{AcceptanceLimit, Decision};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::unit::Unit;
 
@@ -132,7 +132,7 @@ impl FromStr for FigureLimit {
         let (word, number) = text.split_once(':').ok_or_else(bad)?;
         let own = FigureName::ALL.into_iter().find(|it| it.1.eq_ignore_ascii_case(word.trim()));
         let (name, ..) = own.ok_or_else(bad)?;
-        let Limit { unit, most, .. } = number.parse()?;
+        let AcceptanceLimit { unit, most, .. } = number.parse()?;
         if !matches!(unit, Unit::Metre | Unit::Radian) {
             return Err(bad());
         }
@@ -162,7 +162,7 @@ impl FigureLimit {
             return ErrorKind::Option.refuse(format!(
                 "found the limit {}:{}{} and no such figure, expected rows that show it: {}",
                 self.name.symbol(),
-                self.unit.shown(self.most),
+                self.unit.in_shown_unit(self.most),
                 self.unit.symbol(),
                 self.name.needs()
             ));

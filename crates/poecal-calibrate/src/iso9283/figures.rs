@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::faults;
 use super::figure::{FigureBounds, FigureName, TestFigure};
-use super::frame::{Registered, register};
+use super::frame::{RegisteredBarycentres, register};
 use super::intervals::{self, VariancePart, mean_and_covariance};
 use super::rows::{PoseCell, PoseCells, TestRow};
 use super::spread::{self, DEVIATIONS};
@@ -52,11 +52,11 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
     let cells = PoseCells::from_rows(rows);
     let mut warnings = faults::check(&cells)?;
     let base = &cells.base;
-    let commanded: Vec<Pose> = base.iter().map(PoseCell::commanded).collect();
+    let commanded: Vec<Pose> = base.iter().map(PoseCell::commanded_pose).collect();
     let places = |poses: &[Pose]| poses.iter().map(|it| it.translation).collect::<Vec<_>>();
     let found = register(base, &places(&commanded), base_from_device)?;
     faults::refuse_gross(base, &found.errors, base_from_device.is_none())?;
-    let calibrated: Option<Vec<Pose>> = base.iter().map(PoseCell::calibrated).collect();
+    let calibrated: Option<Vec<Pose>> = base.iter().map(PoseCell::calibrated_pose).collect();
     let corrected =
         calibrated.as_ref().map(|it| register(base, &places(it), base_from_device)).transpose()?;
     let mut figures = positions(base, &found, corrected.as_ref());
@@ -98,10 +98,14 @@ fn figure(name: FigureName, cell: &PoseCell<'_>, measured: FigureBounds) -> Test
 }
 
 /// AP and RP of positions.
-fn positions(base: &[PoseCell<'_>], found: &Registered, corrected: Option<&Registered>) -> Vec<TestFigure> {
+fn positions(
+    base: &[PoseCell<'_>],
+    found: &RegisteredBarycentres,
+    corrected: Option<&RegisteredBarycentres>,
+) -> Vec<TestFigure> {
     let mut figures = Vec::new();
     for (k, cell) in base.iter().enumerate() {
-        let accuracy = |of: &Registered| intervals::length(&of.errors[k], &of.parts[k]);
+        let accuracy = |of: &RegisteredBarycentres| intervals::length(&of.errors[k], &of.parts[k]);
         let own = figure(FigureName::Ap, cell, accuracy(found));
         figures.push(TestFigure { corrected: corrected.map(accuracy), ..own });
     }
@@ -120,7 +124,7 @@ fn position_repeatability(cell: &PoseCell<'_>) -> TestFigure {
 /// poses is that of the target on the flange.
 fn orientations(
     base: &[PoseCell<'_>],
-    found: &Registered,
+    found: &RegisteredBarycentres,
     wanted: &[Pose],
     is_fitted: bool,
 ) -> Vec<TestFigure> {
@@ -188,7 +192,7 @@ fn distances(base: &[PoseCell<'_>], commanded: &[Pose], calibrated: Option<&[Pos
         }
     }
     let Some(pair) = at("P2").zip(at("P4")).or(farthest) else { return Vec::new() };
-    let found = paired(&base[pair.0], &base[pair.1]);
+    let found = paired_distances(&base[pair.0], &base[pair.1]);
     if found.len() < 2 {
         return Vec::new();
     }
@@ -212,7 +216,7 @@ fn distances(base: &[PoseCell<'_>], commanded: &[Pose], calibrated: Option<&[Pos
 }
 
 /// Distances between two poses in each cycle that both have; by their order if cycles have no names.
-fn paired(first: &PoseCell<'_>, second: &PoseCell<'_>) -> Vec<f64> {
+fn paired_distances(first: &PoseCell<'_>, second: &PoseCell<'_>) -> Vec<f64> {
     let is_named = |it: &PoseCell<'_>| it.rows.iter().all(|row| !row.labels.cycle.is_empty());
     let by_name = is_named(first) && is_named(second);
     let partner = |(k, row): (usize, &&TestRow)| {
@@ -247,14 +251,14 @@ fn variations(cells: &PoseCells<'_>) -> Vec<TestFigure> {
                 };
                 intervals::length(&(first - second), &[part(others[a], own), part(others[b], other)])
             });
-            figures.extend(largest(bounds).map(|it| figure(name, base, it)));
+            figures.extend(largest_bounds(bounds).map(|it| figure(name, base, it)));
         }
     }
     figures
 }
 
 /// The largest of several figures, with the largest ends of their intervals.
-fn largest(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBounds> {
+fn largest_bounds(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBounds> {
     bounds.reduce(|a, b| FigureBounds {
         found: a.found.max(b.found),
         from: a.from.max(b.from),
@@ -263,7 +267,7 @@ fn largest(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBounds> {
 }
 
 /// dAP and dRP: the largest change from the first series.
-fn drifts(cells: &PoseCells<'_>, found: &Registered) -> Vec<TestFigure> {
+fn drifts(cells: &PoseCells<'_>, found: &RegisteredBarycentres) -> Vec<TestFigure> {
     let accuracy = |cell: &PoseCell<'_>, wanted: &Vector3<f64>| {
         let (mean, spread) = cell.barycentre();
         let turn = found.base_from_device.rotation;
@@ -282,7 +286,7 @@ fn drifts(cells: &PoseCells<'_>, found: &Registered) -> Vec<TestFigure> {
                     && (own.arm == other.arm && own.approach == other.approach)
                     && own.series != other.series
             };
-            let wanted = base.commanded().translation;
+            let wanted = base.commanded_pose().translation;
             let of = |cell: &PoseCell<'_>| {
                 if name == FigureName::Dap {
                     accuracy(cell, &wanted)
@@ -292,7 +296,7 @@ fn drifts(cells: &PoseCells<'_>, found: &Registered) -> Vec<TestFigure> {
             };
             let first = of(base);
             let later = cells.others.iter().filter(is_later).map(|it| intervals::difference(&of(it), &first));
-            figures.extend(largest(later).map(|it| figure(name, base, it)));
+            figures.extend(largest_bounds(later).map(|it| figure(name, base, it)));
         }
     }
     figures

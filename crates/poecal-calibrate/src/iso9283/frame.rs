@@ -13,7 +13,7 @@ use poecal_numerics::linalg;
 const FLAT_M: f64 = 1e-3;
 
 /// Barycentres beside commanded positions, in the base frame.
-pub(super) struct Registered {
+pub(super) struct RegisteredBarycentres {
     pub(super) base_from_device: Pose,
     /// Barycentre less command of each pose, metres.
     pub(super) errors: Vec<Vector3<f64>>,
@@ -29,7 +29,7 @@ pub(super) fn register(
     cells: &[PoseCell<'_>],
     wanted: &[Vector3<f64>],
     stated: Option<Pose>,
-) -> Result<Registered> {
+) -> Result<RegisteredBarycentres> {
     let (means, spreads): (Vec<_>, Vec<_>) = cells.iter().map(PoseCell::barycentre).unzip();
     if stated.is_none() {
         refuse_undetermined(&means)?;
@@ -41,20 +41,20 @@ pub(super) fn register(
     let freedom = |k: usize| cells[k].count() as f64 - 1.0;
     let through = match stated {
         Some(_) => None,
-        None => Some(Through::new(&places)?),
+        None => Some(LinearFrameFit::new(&places)?),
     };
     let parts = (0..cells.len()).map(|i| match &through {
         None => vec![VariancePart { covariance: own(i), freedom: freedom(i) }],
         Some(through) => (0..cells.len())
             .map(|k| {
-                let left = through.left(i, k);
+                let left = through.residual_effect(i, k);
                 VariancePart { covariance: left * own(k) * left.transpose(), freedom: freedom(k) }
             })
             .collect(),
     });
     let parts = parts.collect();
     let errors = places.iter().zip(wanted).map(|(place, wanted)| place - wanted).collect();
-    Ok(Registered { base_from_device, errors, parts })
+    Ok(RegisteredBarycentres { base_from_device, errors, parts })
 }
 
 fn refuse_undetermined(means: &[Vector3<f64>]) -> Result<()> {
@@ -69,12 +69,12 @@ fn refuse_undetermined(means: &[Vector3<f64>]) -> Result<()> {
 }
 
 /// The fit of a frame to points, linearised: which share of each point's error is left.
-struct Through {
+struct LinearFrameFit {
     rows: Vec<Matrix3x6<f64>>,
     inverse: Matrix6<f64>,
 }
 
-impl Through {
+impl LinearFrameFit {
     fn new(places: &[Vector3<f64>]) -> Result<Self> {
         let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
         let row = |place: &Vector3<f64>| {
@@ -90,11 +90,11 @@ impl Through {
                 "found poses on a line, expected others beside it: they do not determine the device frame",
             );
         };
-        Ok(Through { rows, inverse })
+        Ok(LinearFrameFit { rows, inverse })
     }
 
     /// Effect of point `k` on the error that is left of point `i`.
-    fn left(&self, i: usize, k: usize) -> Matrix3<f64> {
+    fn residual_effect(&self, i: usize, k: usize) -> Matrix3<f64> {
         let own = if i == k { Matrix3::identity() } else { Matrix3::zeros() };
         own - self.rows[i] * self.inverse * self.rows[k].transpose()
     }

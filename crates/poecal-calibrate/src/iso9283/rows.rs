@@ -114,12 +114,12 @@ impl PoseCell<'_> {
     }
 
     /// Mean commanded pose: rows of one command differ by rounding.
-    pub(super) fn commanded(&self) -> Pose {
+    pub(super) fn commanded_pose(&self) -> Pose {
         self.mean_pose(|row| Some(row.commanded)).unwrap_or_else(Pose::identity)
     }
 
     /// The same by the calibrated model.
-    pub(super) fn calibrated(&self) -> Option<Pose> {
+    pub(super) fn calibrated_pose(&self) -> Option<Pose> {
         self.mean_pose(|row| row.calibrated)
     }
 

@@ -56,7 +56,7 @@ fn of_normal(variances: [f64; 3]) -> f64 {
 }
 
 /// The variances that are left without noise in every direction; their sum is kept where one would be negative.
-fn freed(variances: [f64; 3], noise: f64) -> [f64; 3] {
+fn remove_noise(variances: [f64; 3], noise: f64) -> [f64; 3] {
     let total = (variances.iter().sum::<f64>() - 3.0 * noise).max(0.0);
     let left = variances.map(|it| (it - noise).max(0.0));
     let sum: f64 = left.iter().sum();
@@ -90,8 +90,8 @@ pub(super) fn with_interval(
     let bounds = FigureBounds { found, from: at(REPETITIONS - 1 - OUTSIDE), to: at(OUTSIDE) };
     let without = noise_variance.map(|noise| {
         // The scatter whose RP this would be, in the measured shape.
-        let free = |raw: f64| of_normal(freed(own.map(|it| it * (raw / expected).powi(2)), noise));
-        let share = of_normal(freed(own, noise)) / expected;
+        let free = |raw: f64| of_normal(remove_noise(own.map(|it| it * (raw / expected).powi(2)), noise));
+        let share = of_normal(remove_noise(own, noise)) / expected;
         FigureBounds { found: found * share, from: free(bounds.from), to: free(bounds.to) }
     });
     (bounds, without)

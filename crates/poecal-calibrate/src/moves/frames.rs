@@ -1,8 +1,8 @@
 //! Device frames so different that no single model describes the rows: frames of files that were measured from different stations and fitted as from
 //! one, and of two parts of a session.
 
-use super::super::{CalibrationOptions, delivered, fit_screws};
-use super::{ChangeKind, Moved};
+use super::super::{CalibrationOptions, fit_screws, nominal_estimate};
+use super::{ChangeKind, DetectedMove};
 use poecal_fit::start::{Registration, register};
 use poecal_fit::state::{Estimate, Session, rms_m};
 use poecal_model::measurement::{Dataset, Noise};
@@ -17,7 +17,7 @@ const PARTS: usize = 4;
 const BETTER: f64 = 3.0;
 
 /// Result of a fit with separate device frames.
-pub(crate) struct FramesApart {
+pub(crate) struct SeparateFrames {
     /// Description and advice.
     statement: String,
     /// The data with a station for each frame.
@@ -26,10 +26,10 @@ pub(crate) struct FramesApart {
     pub(crate) estimate: Estimate,
 }
 
-impl FramesApart {
+impl SeparateFrames {
     /// The result as a warning.
-    pub(crate) fn moved(&self) -> Moved {
-        Moved { statement: self.statement.clone(), is_grave: true, kind: ChangeKind::Frames }
+    pub(crate) fn to_move(&self) -> DetectedMove {
+        DetectedMove { statement: self.statement.clone(), is_grave: true, kind: ChangeKind::Frames }
     }
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct FrameSearch<'a> {
 }
 
 /// Fits with a device frame for each file, or for each part of the session, and compares the errors (theory.md §9, *Change points*).
-pub(crate) fn frames_apart(search: &FrameSearch<'_>) -> Option<FramesApart> {
+pub(crate) fn frames_apart(search: &FrameSearch<'_>) -> Option<SeparateFrames> {
     if search.session.data.station_count() > 1 {
         return None;
     }
@@ -54,7 +54,7 @@ pub(crate) fn frames_apart(search: &FrameSearch<'_>) -> Option<FramesApart> {
 }
 
 impl FrameSearch<'_> {
-    fn files_apart(&self) -> Option<FramesApart> {
+    fn files_apart(&self) -> Option<SeparateFrames> {
         let data = self.by_file()?;
         let names: Vec<String> = data.files.iter().map(|path| path.display().to_string()).collect();
         let names = match names.as_slice() {
@@ -62,13 +62,13 @@ impl FrameSearch<'_> {
             [first, .., last] => format!("{first} to {last}"),
             _ => return None,
         };
-        let (estimate, own_m) = self.fitted(&data);
-        let left = self.better(own_m)?;
+        let (estimate, own_m) = self.fit_rows(&data);
+        let left = self.describe_improvement(own_m)?;
         let statement = format!(
             "the files {names} do not share one device frame: with a frame for each, {left}; the measuring device seems to have been moved \
              between them; calibrate with --device-frames per-file"
         );
-        Some(FramesApart { statement, data, estimate })
+        Some(SeparateFrames { statement, data, estimate })
     }
 
     /// The data with a station for each file; `None` unless several files have enough rows.
@@ -84,24 +84,24 @@ impl FrameSearch<'_> {
         enough.then_some(apart)
     }
 
-    fn parts_apart(&self) -> Option<FramesApart> {
+    fn parts_apart(&self) -> Option<SeparateFrames> {
         let count = self.rows.len();
         if count < FEWEST_TO_PART {
             return None;
         }
-        let first = self.registered(self.session.data, &self.rows[..count / PARTS]);
-        let last = self.registered(self.session.data, &self.rows[count - count / PARTS..]);
-        let mut at = self.parted(&first, &last);
+        let first = self.register(self.session.data, &self.rows[..count / PARTS]);
+        let last = self.register(self.session.data, &self.rows[count - count / PARTS..]);
+        let mut at = self.split_row(&first, &last);
         let mut data = self.in_parts(at);
-        let (mut estimate, mut own_m) = self.fitted(&data);
+        let (mut estimate, mut own_m) = self.fit_rows(&data);
         // Registrations of the two parts may overlap; fitted screws find the row exactly.
-        let better = self.parted(&estimate.seen_from(0), &estimate.seen_from(1));
+        let better = self.split_row(&estimate.seen_from(0), &estimate.seen_from(1));
         if better != at {
             at = better;
             data = self.in_parts(at);
-            (estimate, own_m) = self.fitted(&data);
+            (estimate, own_m) = self.fit_rows(&data);
         }
-        let left = self.better(own_m)?;
+        let left = self.describe_improvement(own_m)?;
         let statement = format!(
             "from {} on the measurements are in another device frame: with one frame before and another from there on, {left}; the \
              measuring device seems to have been moved, by {:.0} mm as seen at the robot; give the rows from there on another name in a \
@@ -109,7 +109,7 @@ impl FrameSearch<'_> {
             self.session.data.place(self.rows[at]),
             1e3 * self.far_m(at, &estimate)
         );
-        Some(FramesApart { statement, data, estimate })
+        Some(SeparateFrames { statement, data, estimate })
     }
 
     /// Distance by which the device was moved before a row, from a fit with separate frames before and after it, metres.
@@ -118,7 +118,7 @@ impl FrameSearch<'_> {
         if self.session.data.station_count() > 1 || at < FEWEST_ROWS || self.rows.len() - at < FEWEST_ROWS {
             return None;
         }
-        let (estimate, own_m) = self.fitted(&self.in_parts(at));
+        let (estimate, own_m) = self.fit_rows(&self.in_parts(at));
         own_m.is_finite().then(|| self.far_m(at, &estimate))
     }
 
@@ -140,7 +140,7 @@ impl FrameSearch<'_> {
     }
 
     /// First row from which on the second of two estimates is better: by logarithms of errors, so that no single row decides.
-    fn parted(&self, first: &Estimate, second: &Estimate) -> usize {
+    fn split_row(&self, first: &Estimate, second: &Estimate) -> usize {
         let errors = [first, second].map(|it| self.session.errors(self.rows, it));
         let log = |error: &super::RowError| error.length_m().max(f64::MIN_POSITIVE).ln();
         let gains = errors[0].iter().zip(&errors[1]).map(|(a, b)| log(a) - log(b));
@@ -154,7 +154,7 @@ impl FrameSearch<'_> {
         best
     }
 
-    fn registered(&self, data: &Dataset, rows: &[u32]) -> Estimate {
+    fn register(&self, data: &Dataset, rows: &[u32]) -> Estimate {
         let session = Session { data, noise_ratios: &[], ..self.session };
         let prior = self.options.prior(&session);
         let registration = Registration {
@@ -164,12 +164,12 @@ impl FrameSearch<'_> {
             targets_free: true,
             prior: prior.as_ref().map(|it| (it, 1.0)),
         };
-        register(&registration, &delivered(session.robot, data)).0
+        register(&registration, &nominal_estimate(session.robot, data)).0
     }
 
     /// A fit, and its root mean square position error, metres.
-    fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
-        let mut start = self.registered(data, self.rows);
+    fn fit_rows(&self, data: &Dataset) -> (Estimate, f64) {
+        let mut start = self.register(data, self.rows);
         let session = Session { data, noise_ratios: &[], ..self.session };
         start.recentre(&session, self.rows);
         let prior = self.options.prior(&session);
@@ -180,7 +180,7 @@ impl FrameSearch<'_> {
     }
 
     /// Comparison of the errors in words, if the reduction is significant.
-    fn better(&self, own_m: f64) -> Option<String> {
+    fn describe_improvement(&self, own_m: f64) -> Option<String> {
         let is_better = BETTER * own_m <= self.left_m;
         is_better.then(|| {
             format!("the residual is {:.3} mm (RMS) instead of {:.1} mm", 1e3 * own_m, 1e3 * self.left_m)

@@ -3,14 +3,14 @@
 mod frames;
 mod series;
 
-pub(crate) use frames::{FrameSearch, FramesApart, frames_apart};
+pub(crate) use frames::{FrameSearch, SeparateFrames, frames_apart};
 
 use nalgebra::Vector3;
 
 use super::{Robustness, RowError};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session, sample_rows};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session, sample_rows};
 use poecal_model::measurement::Quantity;
-use series::{Series, SeriesChange};
+use series::{ErrorSeries, SeriesChange};
 
 /// Most rows of the search: with fewer a change still shows, and its position is determined to a few rows.
 const MOST_ROWS: usize = 20_000;
@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 20_000;
 const EXPLAINED: f64 = 0.8;
 
 /// A change point, drift, or difference of device frames.
-pub(crate) struct Moved {
+pub(crate) struct DetectedMove {
     /// Moved object, first row, distance, and advice.
     pub(crate) statement: String,
     /// True if the result must not be used.
@@ -36,7 +36,7 @@ enum ChangeKind {
     Drift,
 }
 
-impl Moved {
+impl DetectedMove {
     /// True if device frames differ so much that no single model describes the rows.
     pub(crate) fn is_of_frames(&self) -> bool {
         matches!(self.kind, ChangeKind::Frames)
@@ -78,11 +78,11 @@ enum MovedObject {
 }
 
 /// The change that explains most of the squared errors, if it is significant.
-pub(crate) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
+pub(crate) fn find_move(search: &ChangeSearch<'_>) -> Option<DetectedMove> {
     let rows = sample_rows(search.rows, MOST_ROWS);
     let errors = search.session.errors(&rows, search.estimate);
     let mut found: Option<(MovedObject, Vec<u32>, SeriesChange)> = None;
-    let mut consider = |subject: MovedObject, series: Series| {
+    let mut consider = |subject: MovedObject, series: ErrorSeries| {
         let change = series.change(matches!(subject, MovedObject::Device(_)));
         if let Some(change) = change
             && found.as_ref().is_none_or(|(_, _, best)| change.explained > best.explained)
@@ -97,26 +97,26 @@ pub(crate) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
         consider(MovedObject::Target(target), series);
     }
     let (subject, rows, change) = found?;
-    Some(search.moved(subject, &rows, &change))
+    Some(search.move_of_change(subject, &rows, &change))
 }
 
 /// Errors of the rows of one station, in the device's axes.
-fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> Series {
+fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> ErrorSeries {
     let own = rows.iter().zip(errors);
     let own =
         own.filter(|(row, error)| search.session.observation(**row).station == station && is_position(error));
     let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) = own.map(|(&row, error)| (row, error.lead())).unzip();
     let configurations = rows.iter().map(|&row| shapes(search.session.packed, row as usize)).collect();
-    Series { rows, values, configurations }
+    ErrorSeries { rows, values, configurations }
 }
 
 /// True if an error has a direction in space.
 fn is_position(error: &RowError) -> bool {
-    error.leading() == Some(Quantity::Position)
+    error.leading_quantity() == Some(Quantity::Position)
 }
 
 /// Functions of the joint values, which keep errors of the robot apart from a drift.
-fn shapes(packed: &Packed, row: usize) -> Vec<f64> {
+fn shapes(packed: &PackedValues, row: usize) -> Vec<f64> {
     let values = packed.joint_values(row).iter().zip(packed.row(row)).zip(packed.turns());
     let mut shapes = vec![1.0];
     for ((&value, &(cosine, sine)), turns) in values {
@@ -131,10 +131,10 @@ fn shapes(packed: &Packed, row: usize) -> Vec<f64> {
 }
 
 /// Errors of the rows of each target, in the axes of the last link.
-fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> Vec<Series> {
-    let mut series: Vec<Series> = vec![Series::default(); search.session.data.targets.len()];
+fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> Vec<ErrorSeries> {
+    let mut series: Vec<ErrorSeries> = vec![ErrorSeries::default(); search.session.data.targets.len()];
     let linkage = Linkage::new(search.estimate);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     for (&row, error) in rows.iter().zip(errors) {
         let seen = search.session.observation(row);
         chain.evaluate(&linkage, search.session.packed, row as usize, seen);
@@ -147,7 +147,7 @@ fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> V
 }
 
 impl ChangeSearch<'_> {
-    fn moved(&self, subject: MovedObject, rows: &[u32], change: &SeriesChange) -> Moved {
+    fn move_of_change(&self, subject: MovedObject, rows: &[u32], change: &SeriesChange) -> DetectedMove {
         let (data, far_mm) = (self.session.data, 1e3 * change.distance_m);
         let Some(at) = change.at else {
             let (first, last) = (rows.first().copied().unwrap_or(0), rows.last().copied().unwrap_or(0));
@@ -157,7 +157,11 @@ impl ChangeSearch<'_> {
                 data.place(first),
                 data.place(last)
             );
-            return Moved { statement, is_grave: change.distance_m > change.left_m, kind: ChangeKind::Drift };
+            return DetectedMove {
+                statement,
+                is_grave: change.distance_m > change.left_m,
+                kind: ChangeKind::Drift,
+            };
         };
         let place = data.place(rows[at]);
         let statement = match subject {
@@ -177,7 +181,7 @@ impl ChangeSearch<'_> {
             },
         };
         let (before, after) = rows.split_at(at);
-        Moved { statement, is_grave: true, kind: ChangeKind::Step([before.to_vec(), after.to_vec()]) }
+        DetectedMove { statement, is_grave: true, kind: ChangeKind::Step([before.to_vec(), after.to_vec()]) }
     }
 
     /// Description of a moved device; at the first row of a file, a description of files without a common device frame.

@@ -27,7 +27,7 @@ const ROWS_PER_SHAPE: usize = 2;
 
 /// Errors in the order of time.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Series {
+pub(crate) struct ErrorSeries {
     pub(crate) rows: Vec<u32>,
     /// Errors, metres, in axes in which a move shifts them alike.
     pub(crate) values: Vec<Vector3<f64>>,
@@ -49,13 +49,13 @@ pub(crate) struct SeriesChange {
 }
 
 /// A model of the series, and its explained squares.
-struct Explained {
+struct SeriesModel {
     at: usize,
     change: Vector3<f64>,
     explained: f64,
 }
 
-impl Series {
+impl ErrorSeries {
     /// The step (or, if `may_drift`, the drift) that explains most, if it is significant: theory.md §9, *Change points*.
     pub(crate) fn change(&self, may_drift: bool) -> Option<SeriesChange> {
         let kept = self.without_wrong()?;
@@ -65,7 +65,7 @@ impl Series {
         let total: f64 = values.iter().map(|value| (value - mean).norm_squared()).sum();
         let variance = |explained: f64| (total - explained).max(0.0) / (3.0 * count - 6.0).max(1.0);
         let step = strongest_step(&values)?;
-        let steady = steady(&values);
+        let steady = fit_drift(&values);
         if may_drift && steady.explained > step.explained {
             let left = variance(steady.explained);
             let beyond = self.beyond_configurations(&kept, &values, mean)?;
@@ -118,7 +118,7 @@ impl Series {
         kept: &[usize],
         values: &[Vector3<f64>],
         mean: Vector3<f64>,
-    ) -> Option<Explained> {
+    ) -> Option<SeriesModel> {
         let shapes: Vec<&[f64]> =
             kept.iter().filter_map(|&index| self.configurations.get(index)).map(Vec::as_slice).collect();
         let n = shapes.first()?.len();
@@ -143,7 +143,7 @@ impl Series {
         let squares: f64 = own.iter().map(|time| time * time).sum();
         let sum: Vector3<f64> = own.iter().zip(values).map(|(&time, value)| (value - mean) * time).sum();
         let change = sum / squares.max(f64::MIN_POSITIVE);
-        Some(Explained { at: 0, change, explained: change.norm_squared() * squares })
+        Some(SeriesModel { at: 0, change, explained: change.norm_squared() * squares })
     }
 }
 
@@ -153,20 +153,20 @@ fn time(index: usize, count: usize) -> f64 {
 }
 
 /// A linear drift, by least squares.
-fn steady(values: &[Vector3<f64>]) -> Explained {
+fn fit_drift(values: &[Vector3<f64>]) -> SeriesModel {
     let times = || (0..values.len()).map(|index| time(index, values.len()));
     let squares: f64 = times().map(|time| time * time).sum();
     let change = times().zip(values).map(|(time, value)| value * time).sum::<Vector3<f64>>()
         / squares.max(f64::MIN_POSITIVE);
-    Explained { at: 0, change, explained: change.norm_squared() * squares }
+    SeriesModel { at: 0, change, explained: change.norm_squared() * squares }
 }
 
 /// The step that explains most, among all positions with enough rows on both sides.
-fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
+fn strongest_step(values: &[Vector3<f64>]) -> Option<SeriesModel> {
     let count = values.len();
     let total: Vector3<f64> = values.iter().sum();
     let mut before = Vector3::zeros();
-    let mut best: Option<Explained> = None;
+    let mut best: Option<SeriesModel> = None;
     for (index, value) in values.iter().enumerate() {
         before += value;
         let (first, rest) = (index + 1, count - index - 1);
@@ -177,7 +177,7 @@ fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
         let change = (total - before) / rest as f64 - before / first as f64;
         let explained = change.norm_squared() * first as f64 * rest as f64 / count as f64;
         if best.as_ref().is_none_or(|best| explained > best.explained) {
-            best = Some(Explained { at: first, change, explained });
+            best = Some(SeriesModel { at: first, change, explained });
         }
     }
     best

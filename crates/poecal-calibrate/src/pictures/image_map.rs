@@ -4,10 +4,10 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::projection::Projection;
+use super::projection::PixelPrediction;
 use crate::Correction;
 use crate::run::pixels::seen_pixels;
-use crate::steps::calibrated::CalibratedFit;
+use crate::steps::calibrated_fit::CalibratedFit;
 use crate::steps::figures::Figures;
 use poecal_fit::state::RowError;
 use poecal_model::camera::Camera;
@@ -50,7 +50,7 @@ pub struct ImageCell {
 }
 
 /// Sums of the corners of a cell: number, squares before and after, and errors after.
-type Sums = (usize, [f64; 2], Vector2<f64>);
+type CellSums = (usize, [f64; 2], Vector2<f64>);
 
 /// The maps of all cameras whose picture has a known size.
 pub(crate) fn image_maps(fit: &CalibratedFit<'_>, figures: &Figures) -> Vec<ImageMap> {
@@ -58,37 +58,37 @@ pub(crate) fn image_maps(fit: &CalibratedFit<'_>, figures: &Figures) -> Vec<Imag
     if fit.run.data.pictures.is_empty() {
         return Vec::new();
     }
-    let Some(projection) = Projection::from_fit(fit) else { return Vec::new() };
+    let Some(projection) = PixelPrediction::from_fit(fit) else { return Vec::new() };
     let of = |(at, camera): (usize, &Camera)| {
-        let map = Grid::from_camera(camera)?;
+        let map = ImageGrid::from_camera(camera)?;
         map.of_camera((at, camera), fit, (&projection, figures))
     };
     cameras.iter().enumerate().filter_map(of).collect()
 }
 
 /// The cells of an image.
-struct Grid {
+struct ImageGrid {
     cell_px: f64,
     size: [usize; 2],
 }
 
-impl Grid {
+impl ImageGrid {
     fn from_camera(camera: &Camera) -> Option<Self> {
         let [width, height] = camera.lens.size_px.filter(|size| !size.contains(&0))?.map(f64::from);
         let cell_px = (width.max(height) / ALONG / ROUND_PX).ceil() * ROUND_PX;
-        Some(Grid { cell_px, size: [width, height].map(|it| (it / cell_px).ceil() as usize) })
+        Some(ImageGrid { cell_px, size: [width, height].map(|it| (it / cell_px).ceil() as usize) })
     }
 
     fn of_camera(
         &self,
         (at, camera): (usize, &Camera),
         fit: &CalibratedFit<'_>,
-        (projection, figures): (&Projection, &Figures),
+        (projection, figures): (&PixelPrediction, &Figures),
     ) -> Option<ImageMap> {
         let distance_m = projection.distance_m(at)?;
         let sums = self.sums(at, fit, figures);
         let [columns, _] = self.size;
-        let cell = |(k, (corners, squares, sum)): (usize, Sums)| {
+        let cell = |(k, (corners, squares, sum)): (usize, CellSums)| {
             let at_cell = [k % columns, k / columns];
             let middle = Vector2::from(at_cell.map(|it| (it as f64 + 0.5) * self.cell_px - 0.5));
             let size = camera.lens.size_px.unwrap_or_default().map(|it| f64::from(it) - 1.0);
@@ -110,7 +110,7 @@ impl Grid {
         })
     }
 
-    fn sums(&self, camera: usize, fit: &CalibratedFit<'_>, figures: &Figures) -> Vec<Sums> {
+    fn sums(&self, camera: usize, fit: &CalibratedFit<'_>, figures: &Figures) -> Vec<CellSums> {
         let data = &fit.run.data;
         let [columns, rows] = self.size;
         let mut sums = vec![(0, [0.0; 2], Vector2::zeros()); columns * rows];

@@ -13,12 +13,12 @@ pub(crate) mod view_doubts;
 use nalgebra::{Matrix6, Vector6};
 
 use super::robust::RobustFit;
-use super::run::Run;
+use super::run::CalibrationRun;
 use crate::pictures::optics::Optics;
 use crate::trust::information::FitInformation;
 use poecal_arm::lie::Pose;
 use poecal_fit::start::predicted_pose;
-use poecal_model::camera::{Centre, CommonError, Sighting, View};
+use poecal_model::camera::{Centre, CommonError, Sighting, SightingInput};
 use poecal_model::measurement::{Dataset, Noise, SightingAbout, deviation};
 
 /// Most fits with the noise of pictures re-estimated.
@@ -36,14 +36,14 @@ const FASTEST: f64 = 4.0;
 /// Convergence of the rounds to the common error that they agree with: each round alone goes a share of the distance, a smaller one the less its
 /// pictures determine it.
 #[derive(Default)]
-pub(crate) struct Pace {
+pub(crate) struct RoundPace {
     /// Start of the last round, as logarithms of shift and turn, and its step.
     last: Option<([f64; 2], [f64; 2])>,
 }
 
-impl Pace {
+impl RoundPace {
     /// The common error at which the steps of this round and the last would end, if they shrink evenly: between the step and [`FASTEST`] times it.
-    fn ahead(&mut self, from: CommonError, to: CommonError) -> CommonError {
+    fn extrapolate(&mut self, from: CommonError, to: CommonError) -> CommonError {
         let logs = |it: CommonError| [it.shift_m, it.turn_rad].map(f64::ln);
         let (begin, end) = (logs(from), logs(to));
         let step = [end[0] - begin[0], end[1] - begin[1]];
@@ -61,16 +61,16 @@ impl Pace {
 }
 
 /// A sighting, and the deviation of its row from the prediction.
-type Seen = (Sighting, Vector6<f64>);
+type SightingError = (Sighting, Vector6<f64>);
 
-impl Run<'_> {
+impl CalibrationRun<'_> {
     /// The data with the noise of pictures as estimated from the residuals of a fit, and with each picture at the pose nearest to its prediction.
     /// `None` if that changes nothing.
     pub(crate) fn renewed_pictures(
         &self,
         ratios: &[Noise],
         fit: &RobustFit,
-        (optics, pace): (&mut Option<Optics>, &mut Pace),
+        (optics, pace): (&mut Option<Optics>, &mut RoundPace),
     ) -> Option<Dataset> {
         if self.data.pictures.is_empty() {
             return None;
@@ -86,24 +86,24 @@ impl Run<'_> {
         let errors = session.errors(&rows, estimate);
         let mut has_moved = next.is_some();
         // Sightings with their deviations from prediction, as motions of their rows.
-        let mut found: Vec<Seen> = Vec::with_capacity(rows.len());
+        let mut found: Vec<SightingError> = Vec::with_capacity(rows.len());
         for (picture, error) in pictures.all.iter().zip(&errors) {
             let measured = self.data.observations[picture.row as usize].measurement.pose();
             let predicted = predicted_pose(&measured, error);
             let view = pictures.view(picture)?;
-            let kept = view.sighting(&picture.directed(&measured), true)?;
-            let expected = picture.directed(&predicted);
+            let kept = view.sighting(&picture.directed_measurement(&measured), true)?;
+            let expected = picture.directed_measurement(&predicted);
             let sighting = nearest_sighting(&view, kept, &expected);
-            let pose = picture.directed(&sighting.camera_from_board);
-            let moved = deviation(&sighting.camera_from_board, &picture.directed(&measured));
+            let pose = picture.directed_measurement(&sighting.camera_from_board);
+            let moved = deviation(&sighting.camera_from_board, &picture.directed_measurement(&measured));
             has_moved |= (moved.transpose() * sighting.information * moved)[0] > CHANGE * CHANGE;
             found.push((sighting, deviation(&pose, &predicted)));
         }
-        let numbers = optics.as_ref().map_or(0.0, Optics::determined);
+        let numbers = optics.as_ref().map_or(0.0, Optics::determined_count);
         let spreads = self.spreads_of_pictures(information.as_ref());
         let common = self.common_error((fit, numbers), (&found, &spreads), session.length_m);
         let before = pictures.common;
-        let common = pace.ahead(before, common);
+        let common = pace.extrapolate(before, common);
         let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
         let same = common.about == before.about
             && !differs(common.shift_m, before.shift_m)
@@ -129,7 +129,7 @@ impl Run<'_> {
     fn common_error(
         &self,
         (fit, numbers): (&RobustFit, f64),
-        (found, spreads): (&[Seen], &[Matrix6<f64>]),
+        (found, spreads): (&[SightingError], &[Matrix6<f64>]),
         length_m: f64,
     ) -> CommonError {
         let pictures = &self.data.pictures;
@@ -147,7 +147,7 @@ impl Run<'_> {
             .collect()
         };
         let likeliest = |about: Centre| {
-            CommonError { about, ..pictures.common }.likeliest(&seen(about), numbers, length_m)
+            CommonError { about, ..pictures.common }.estimate_likely(&seen(about), numbers, length_m)
         };
         let (board, camera) = (likeliest(Centre::Board), likeliest(Centre::Camera));
         // The known centre is kept unless the other is better.
@@ -169,15 +169,15 @@ impl Run<'_> {
 }
 
 /// The sighting of a picture nearest to its prediction, if it is nearly as good as the kept one; else the kept one.
-fn nearest_sighting(view: &View<'_>, kept: Sighting, expected: &Pose) -> Sighting {
-    let is_near = |it: &Sighting| expected.apart(&it.camera_from_board).1 <= FLIPPED_RAD;
+fn nearest_sighting(view: &SightingInput<'_>, kept: Sighting, expected: &Pose) -> Sighting {
+    let is_near = |it: &Sighting| expected.distance_and_angle(&it.camera_from_board).1 <= FLIPPED_RAD;
     // To first order at the prediction, where the rounds end at the fit of the pixels; far from it at the nearest best pose.
     let near = || view.sighting(expected, true).filter(is_near);
     let mean = |it: &Sighting| it.cost / it.freedom.max(1.0);
     let is_as_good = |near: &Sighting| {
         mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0
     };
-    let sighting = view.near(expected).filter(is_as_good);
+    let sighting = view.sighting_near(expected).filter(is_as_good);
     sighting.or_else(|| near().filter(is_as_good)).unwrap_or(kept)
 }
 
@@ -188,16 +188,16 @@ mod tests {
     #[test]
     fn steps_that_shrink_evenly_are_gone_at_once() {
         let at = |log: f64| CommonError { shift_m: log.exp(), turn_rad: log.exp(), ..CommonError::NONE };
-        let mut pace = Pace::default();
+        let mut pace = RoundPace::default();
         // The first step alone, then half of it: together they end at -4 - 1.
-        assert_eq!(pace.ahead(at(-3.0), at(-4.0)), at(-4.0));
-        let ahead = pace.ahead(at(-4.0), at(-4.5));
+        assert_eq!(pace.extrapolate(at(-3.0), at(-4.0)), at(-4.0));
+        let ahead = pace.extrapolate(at(-4.0), at(-4.5));
         println!("steps of 1 and 1/2 end at {:.6}", ahead.shift_m.ln());
         assert!((ahead.shift_m.ln() + 5.0).abs() < 1e-12 && (ahead.turn_rad.ln() + 5.0).abs() < 1e-12);
         // Steps that turn back are not extended.
-        assert!((pace.ahead(at(-5.0), at(-4.75)).shift_m.ln() + 4.75).abs() < 1e-12);
+        assert!((pace.extrapolate(at(-5.0), at(-4.75)).shift_m.ln() + 4.75).abs() < 1e-12);
         // Another centre is another error.
         let other = CommonError { about: Centre::Camera, ..at(-4.9) };
-        assert_eq!(pace.ahead(at(-4.75), other), other);
+        assert_eq!(pace.extrapolate(at(-4.75), other), other);
     }
 }

@@ -2,20 +2,20 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2xX};
 
-use crate::corrections::{solved, whitened_rows};
+use crate::corrections::{solve_factored, whitened_rows};
 use crate::robust::RobustFit;
-use crate::run::Run;
+use crate::run::CalibrationRun;
 use crate::trust::information::{FitInformation, factor_of};
 use poecal_fit::problem::Problem;
 use poecal_fit::start::predicted_pose;
 use poecal_fit::state::Estimate;
 use poecal_model::camera::{
-    Board, Camera, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, Projection,
+    Board, Camera, PictureInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, Projection,
     motion_by_inverse,
 };
 use poecal_model::measurement::Dataset;
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Largest step of a number, standard deviations of its prior.
 const FARTHEST: f64 = 3.0;
@@ -54,7 +54,7 @@ impl BestStep {
 
 impl Optics {
     /// Optics of a session with pictures, from the stated values.
-    pub(crate) fn from_run(run: &Run<'_>) -> Option<Self> {
+    pub(crate) fn from_run(run: &CalibrationRun<'_>) -> Option<Self> {
         let pictures = &run.data.pictures;
         let has_any = !pictures.is_empty() && !run.unknowns.pictures.is_empty();
         has_any.then(|| Optics::from_here(pictures, &run.unknowns.pictures))
@@ -74,7 +74,7 @@ impl Optics {
 
     /// Cameras and boards after a step.
     pub(crate) fn after(&self, step: &DVector<f64>) -> (Vec<Camera>, Vec<Board>) {
-        self.unknowns.at(step)
+        self.unknowns.apply_step(step)
     }
 
     /// The numbers after a step, with their standard deviations.
@@ -83,7 +83,7 @@ impl Optics {
     }
 
     /// Effective number of numbers that the pictures determine rather than the prior.
-    pub(crate) fn determined(&self) -> f64 {
+    pub(crate) fn determined_count(&self) -> f64 {
         self.deviations.iter().map(|it| 1.0 - it * it).sum::<f64>().max(0.0)
     }
 
@@ -95,19 +95,19 @@ impl Optics {
         let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
         let errors = problem.session().errors(&rows, estimate);
         let count = self.unknowns.count();
-        let mut own = OwnInformation::none(count);
+        let mut own = PictureInformation::zero(count);
         let mut by_numbers = DMatrix::zeros(residuals.len(), count);
         for (at, (row, error)) in rows.iter().zip(&errors).enumerate() {
             let Some(picture) = pictures.of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
             let Some(view) = pictures.view(picture) else { continue };
             let Some(whitening) = data.whitening_of_picture(*row) else { continue };
             let measured = data.observations[*row as usize].measurement.pose();
-            if view.is_odd(&picture.directed(&measured)) {
+            if view.is_odd(&picture.directed_measurement(&measured)) {
                 continue;
             }
             // The information is evaluated at the prediction: there the size of the robot and the size of the board are one direction, to the last
             // digit.
-            let pose = picture.directed(&predicted_pose(&measured, error));
+            let pose = picture.directed_measurement(&predicted_pose(&measured, error));
             let information = view.information(&pose);
             let of = (picture.camera, picture.board);
             let mut follow = self.unknowns.add(of, &view, (&pose, &information), &mut own);
@@ -124,10 +124,14 @@ impl Optics {
     }
 
     /// The best step of the numbers from the optimum of a fit, with their standard deviations and the resulting step of the robot's unknowns.
-    pub(crate) fn best_step(&self, run: &Run<'_>, information: &FitInformation<'_>) -> Option<BestStep> {
+    pub(crate) fn best_step(
+        &self,
+        run: &CalibrationRun<'_>,
+        information: &FitInformation<'_>,
+    ) -> Option<BestStep> {
         let Coupling { mixed, gram, pull } =
             self.coupling(&run.data, &information.problem, information.estimate);
-        let follow = information.solved(&mixed);
+        let follow = information.solve(&mixed);
         let pull = pull - follow.tr_mul(information.gradient());
         let factor = factor_of(&(gram - mixed.transpose() * &follow))?;
         let count = self.unknowns.count();
@@ -146,7 +150,7 @@ impl Optics {
     /// less than `least` standard deviations.
     pub(crate) fn advance(
         &mut self,
-        run: &Run<'_>,
+        run: &CalibrationRun<'_>,
         (information, fit): (&FitInformation<'_>, &RobustFit),
         least: f64,
     ) -> Option<(Dataset, Estimate)> {
@@ -162,7 +166,7 @@ impl Optics {
         let estimate = fit.fitted.layout.retract(&fit.fitted.estimate, of_robot.as_slice());
         self.step += step;
         let mut data = run.data.clone().into_owned();
-        let (cameras, boards) = self.unknowns.at(&self.step);
+        let (cameras, boards) = self.unknowns.apply_step(&self.step);
         data.pictures = Pictures { cameras, boards, ..data.pictures };
         Some((data, estimate))
     }
@@ -173,11 +177,11 @@ impl Optics {
         data: &Dataset,
         problem: &Problem<'_>,
         estimate: &Estimate,
-        normal: &mut Normal,
+        normal: &mut NormalEquations,
     ) {
         let Coupling { mixed, gram, .. } = self.coupling(data, problem, estimate);
         let Some(factor) = factor_of(&gram) else { return };
-        let explained = &mixed * solved(&factor, &mixed.transpose());
+        let explained = &mixed * solve_factored(&factor, &mixed.transpose());
         let n = normal.dim();
         for i in 0..n {
             for j in i..n {

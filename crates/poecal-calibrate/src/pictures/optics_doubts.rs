@@ -1,12 +1,12 @@
 //! Lenses and boards that the corners of single pictures contradict (theory.md §4, *Pictures*).
 
 use super::optics::{BestStep, Optics};
-use crate::steps::calibrated::CalibratedFit;
+use crate::steps::calibrated_fit::CalibratedFit;
 use crate::trust::information::FitInformation;
 use poecal_model::camera::{
     Board, Camera, OTHER_LENS, PictureNumber, PictureUnknown, Pictures, changed_numbers, is_flat_sheet,
 };
-use poecal_numerics::error::shown;
+use poecal_numerics::error::shorten_name;
 
 /// Least share of the squared errors of corners that another lens or board must explain.
 const EVIDENT: f64 = 0.1;
@@ -40,14 +40,14 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     let boards = pictures.boards.iter().enumerate().map(|(at, board)| {
         if is_flat_sheet(board) { PictureUnknown::Board(at) } else { PictureUnknown::Markers(at) }
     });
-    let before = remaining(fit, (&pictures.cameras, &pictures.boards))?;
+    let before = remaining_error(fit, (&pictures.cameras, &pictures.boards))?;
     let weights = fit.robust.weights();
     let information = FitInformation::from_fit(&fit.run, &fit.noise_ratios, (&fit.robust, &weights))?;
     let tried = lenses.chain(boards).filter(held).filter_map(|unknown| {
         let optics = Optics::from_here(pictures, &[unknown]);
         let best = optics.best_step(&fit.run, &information)?;
         let (cameras, boards) = optics.after(&best.step);
-        let after = remaining(fit, (&cameras, &boards))?;
+        let after = remaining_error(fit, (&cameras, &boards))?;
         Some((after, unknown, optics, best))
     });
     let (after, unknown, optics, best) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -67,7 +67,7 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
 
 /// Mean squared error of the coordinates of corners beside the best pose of each held-out picture, pixels²: the numbers were fitted without these
 /// pictures.
-fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) -> Option<f64> {
+fn remaining_error(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) -> Option<f64> {
     let data = &fit.run.data;
     let others = Pictures {
         cameras: cameras.to_vec(),
@@ -82,7 +82,7 @@ fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) 
         {
             continue;
         }
-        let pose = picture.directed(&data.observations[picture.row as usize].measurement.pose());
+        let pose = picture.directed_measurement(&data.observations[picture.row as usize].measurement.pose());
         let found = others.view(picture)?.sighting(&pose, true)?;
         squares += found.cost_px2;
         freedom += found.freedom;
@@ -100,7 +100,7 @@ fn words(
     let both = format!("{before_px:.2} px off the best pose of their picture, {after_px:.2} px");
     match unknown {
         PictureUnknown::Lens(camera) => {
-            let name = shown(&pictures.cameras.get(camera)?.name);
+            let name = shorten_name(&pictures.cameras.get(camera)?.name);
             Some(format!(
                 "the corners are {both} with another lens of the camera `{name}` ({}): calibrate with --free lens",
                 changed_numbers(&numbers, FAR)
@@ -111,7 +111,7 @@ fn words(
             let board = pictures.boards.get(board)?;
             let squares: f64 = numbers.iter().map(|it| (it.found - it.given).powi(2)).sum();
             let moved = (squares / board.points.len().max(1) as f64).sqrt();
-            let name = shown(&board.name);
+            let name = shorten_name(&board.name);
             Some(format!(
                 "the corners are {both} with points of the body `{name}` that are {moved:.2} mm (RMS) elsewhere: measure them, or calibrate with \
                  --free markers"
@@ -139,7 +139,7 @@ fn shape_words(board: &Board, numbers: &[PictureNumber], best: &BestStep, both: 
     if is_bent {
         found.push(format!("it is bent by {bend_mm:.2} mm"));
     }
-    let name = shown(&board.name);
+    let name = shorten_name(&board.name);
     (!found.is_empty()).then(|| {
         format!(
             "the corners are {both} with another shape of the board `{name}`: {}; measure the print, or calibrate with --free board",

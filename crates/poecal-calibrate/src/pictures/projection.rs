@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, Matrix2x6, Matrix6xX, Vector3};
 
 use super::optics::{BestStep, Optics};
-use crate::run::Run;
+use crate::run::CalibrationRun;
 use crate::run::pixels::predicted_picture;
-use crate::steps::calibrated::CalibratedFit;
+use crate::steps::calibrated_fit::CalibratedFit;
 use crate::trust::information::FitInformation;
 use poecal_arm::lie::{Pose, hat};
 use poecal_model::camera::{Camera, middle, motion_by_inverse};
@@ -16,21 +16,21 @@ use poecal_numerics::distributions::median;
 const PICTURES: usize = 24;
 
 /// A fitted picture: the pose of its board predicted by the robot, and its derivative by the unknowns.
-struct Seen {
+struct FittedPicture {
     pose: Pose,
     by_unknowns: Matrix6xX<f64>,
     depth_m: f64,
 }
 
 /// Uncertainty of predicted pixels by a fit.
-pub(crate) struct Projection {
+pub(crate) struct PixelPrediction {
     covariance: DMatrix<f64>,
     numbers: Option<(Optics, BestStep)>,
     /// Fitted pictures of each camera.
-    seen: Vec<Vec<Seen>>,
+    seen: Vec<Vec<FittedPicture>>,
 }
 
-impl Projection {
+impl PixelPrediction {
     pub(crate) fn from_fit(fit: &CalibratedFit<'_>) -> Option<Self> {
         let CalibratedFit { run, robust, noise_ratios, optics, .. } = fit;
         let weights = robust.weights();
@@ -39,7 +39,7 @@ impl Projection {
         let motions = information.of_pictures(run);
         let cameras = 0..run.data.pictures.cameras.len();
         let seen = cameras.map(|at| run.seen_by(at, (&information, noise_ratios), &motions)).collect();
-        Some(Projection { covariance: information.covariance(), numbers, seen })
+        Some(PixelPrediction { covariance: information.covariance(), numbers, seen })
     }
 
     /// Median depth of the boards before a camera, metres; `None` without pictures.
@@ -52,7 +52,7 @@ impl Projection {
         let found = camera.lens.projection(point)?;
         let seen = self.seen.get(at)?;
         let mut squares = 0.0;
-        for Seen { pose, by_unknowns, .. } in seen {
+        for FittedPicture { pose, by_unknowns, .. } in seen {
             let mut by_pose = Matrix2x6::zeros();
             by_pose.fixed_view_mut::<2, 3>(0, 0).copy_from(&found.by_point);
             by_pose
@@ -69,14 +69,14 @@ impl Projection {
     }
 }
 
-impl Run<'_> {
+impl CalibrationRun<'_> {
     /// Evenly spaced pictures of a camera.
     fn seen_by(
         &self,
         camera: usize,
         (information, ratios): (&FitInformation<'_>, &[Noise]),
         motions: &[(usize, Matrix6xX<f64>)],
-    ) -> Vec<Seen> {
+    ) -> Vec<FittedPicture> {
         let pictures = &self.data.pictures;
         let own: Vec<&(usize, Matrix6xX<f64>)> =
             motions.iter().filter(|(at, _)| pictures.all[*at].camera == camera).collect();
@@ -88,7 +88,7 @@ impl Run<'_> {
             let by_unknowns =
                 if picture.of_camera { motion_by_inverse(&pose) * motion } else { motion.clone() };
             let depth_m = pose.act(&middle(&pictures.boards.get(picture.board)?.points)).z;
-            Some(Seen { pose, by_unknowns, depth_m })
+            Some(FittedPicture { pose, by_unknowns, depth_m })
         };
         own.iter().step_by(step).filter_map(of).collect()
     }

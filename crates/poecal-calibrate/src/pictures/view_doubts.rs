@@ -1,9 +1,9 @@
 //! Unknowns that the pictures of a camera cannot determine, for any robot (theory.md §4, *Pictures*).
 
 use crate::run::pixels::predicted_picture;
-use crate::steps::calibrated::CalibratedFit;
-use poecal_model::camera::{PictureUnknown, Views, is_flat_sheet};
-use poecal_numerics::error::shown;
+use crate::steps::calibrated_fit::CalibratedFit;
+use poecal_model::camera::{CameraViews, PictureUnknown, is_flat_sheet};
+use poecal_numerics::error::shorten_name;
 
 /// Angle to the image below which a board is parallel to it, rad.
 const PARALLEL_RAD: f64 = 0.1;
@@ -19,25 +19,26 @@ const CENTRE: f64 = 0.01;
 /// A sentence for each quantity that the pictures of a camera leave undetermined, with advice.
 pub(crate) fn view_doubts(fit: &CalibratedFit<'_>) -> Vec<String> {
     let cameras = 0..fit.run.data.pictures.cameras.len();
-    cameras.flat_map(|camera| OneCamera::new(fit, camera).map(|it| it.doubts()).unwrap_or_default()).collect()
+    cameras.flat_map(|camera| CameraFit::new(fit, camera).map(|it| it.doubts()).unwrap_or_default()).collect()
 }
 
 /// A camera with the views of its fitted pictures.
-struct OneCamera<'a> {
+struct CameraFit<'a> {
     fit: &'a CalibratedFit<'a>,
     camera: usize,
     name: String,
-    views: Views,
+    views: CameraViews,
     /// True if all its boards are flat.
     is_flat: bool,
 }
 
-impl<'a> OneCamera<'a> {
+impl<'a> CameraFit<'a> {
     /// The views of a camera; `None` without pictures.
     fn new(fit: &'a CalibratedFit<'a>, camera: usize) -> Option<Self> {
         let data = &fit.run.data;
         let pictures = &data.pictures;
-        let mut views = Views { poses: vec![Vec::new(); pictures.boards.len()], ..Views::default() };
+        let mut views =
+            CameraViews { poses: vec![Vec::new(); pictures.boards.len()], ..CameraViews::default() };
         let rows = fit.run.fit_rows.iter().copied().filter(|row| !fit.robust.robustness.suspects_row(*row));
         let rows: Vec<u32> = rows.filter(|row| pictures.of_row(*row).is_some()).collect();
         // Poses as the robot predicts them: a single picture hardly determines the tilt of a board seen from the front.
@@ -52,12 +53,12 @@ impl<'a> OneCamera<'a> {
         }
         let mut seen = pictures.boards.iter().zip(&views.poses).filter(|(_, poses)| !poses.is_empty());
         let is_flat = seen.all(|(board, _)| is_flat_sheet(board));
-        let name = shown(&pictures.cameras.get(camera)?.name).into_owned();
-        (!views.pixels.is_empty()).then_some(OneCamera { fit, camera, name, views, is_flat })
+        let name = shorten_name(&pictures.cameras.get(camera)?.name).into_owned();
+        (!views.pixels.is_empty()).then_some(CameraFit { fit, camera, name, views, is_flat })
     }
 
     fn doubts(&self) -> Vec<String> {
-        [self.parallel(), self.one_axis(), self.one_part(), self.focal_length(), self.centre()]
+        [self.describe_parallel_views(), self.one_axis(), self.one_part(), self.focal_length(), self.centre()]
             .into_iter()
             .flatten()
             .collect()
@@ -67,7 +68,7 @@ impl<'a> OneCamera<'a> {
         self.fit.run.unknowns.pictures.contains(&PictureUnknown::Lens(self.camera))
     }
 
-    fn parallel(&self) -> Option<String> {
+    fn describe_parallel_views(&self) -> Option<String> {
         let tilt = self.views.largest_tilt();
         (self.is_flat && tilt < PARALLEL_RAD).then(|| {
             format!(

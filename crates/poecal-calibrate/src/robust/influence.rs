@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::rows::component_scale;
-use crate::run::{fit, written};
+use crate::run::{fit, formulate_data};
 use crate::{Calibration, DeviceFrameKnowledge};
 use poecal_fit::analysis::{Influence, influence};
 use poecal_fit::parameters::{Parameter, screw_axes};
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::Dataset;
-use poecal_numerics::solve::{LeastSquares, Normal};
+use poecal_numerics::solve::{LeastSquares, NormalEquations};
 
 /// Leverage and studentised residual of these rows in a finished calibration (theory.md §6 (34d), (34e)).
 #[must_use]
@@ -26,19 +26,19 @@ pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) ->
 pub struct RowInfluence<'a> {
     calibration: &'a Calibration,
     data: Cow<'a, Dataset>,
-    packed: Arc<Packed>,
+    packed: Arc<PackedValues>,
     weights: Vec<f64>,
     free: Vec<Parameter>,
     length_m: f64,
     /// Normal information of the fitted rows; `None` without rows.
-    normal: Option<Normal>,
+    normal: Option<NormalEquations>,
 }
 
 impl<'a> RowInfluence<'a> {
     /// Prepares a finished calibration.
     pub fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
-        let packed = calibration.packed(data);
-        let data = written(Cow::Borrowed(data), calibration.formulation.pose_residual);
+        let packed = calibration.packed_values(data);
+        let data = formulate_data(Cow::Borrowed(data), calibration.formulation.pose_residual);
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { fit_rows, models, .. } = calibration;
         let session = calibration.session(&data, &packed);

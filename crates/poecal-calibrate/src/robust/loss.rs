@@ -62,10 +62,10 @@ impl Loss {
 /// Loss of a calibration.
 ///
 /// ```
-/// assert_eq!(poecal_calibrate::Robust::default(), poecal_calibrate::Robust::Auto);
+/// assert_eq!(poecal_calibrate::RobustLoss::default(), poecal_calibrate::RobustLoss::Auto);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Robust {
+pub enum RobustLoss {
     /// Least squares, unless outliers are evident: then Tukey's loss, and a warning reports it.
     #[default]
     Auto,

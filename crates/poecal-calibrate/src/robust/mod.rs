@@ -1,30 +1,30 @@
 //! Robust fits: iteratively reweighted least squares, and the decision for or against them (theory.md §6, *Outliers*).
 
-mod alike;
+mod common_errors;
 mod influence;
 mod loss;
 mod rows;
 mod scale;
 
 pub use influence::{RowInfluence, row_influence};
-pub use loss::{Loss, Robust};
+pub use loss::{Loss, RobustLoss};
 pub use rows::{Robustness, RowJudgement};
 
 use super::{CalibrationOptions, estimate_noise};
-use crate::run::noise::{NoiseSource, stated};
-use crate::run::task::Task;
-use crate::steps::found::{Fitted, OngoingFit, Start};
-pub(crate) use alike::Configurations;
+use crate::run::noise::{NoiseSource, merge_stated_noise};
+use crate::run::task::FitTask;
+use crate::steps::fit_progress::{FinishedFit, OngoingFit, RegisteredStart};
+pub(crate) use common_errors::RepeatedConfigurations;
 use poecal_fit::parameters::Parameter;
 use poecal_fit::start::{Registration, register_robustly};
 use poecal_fit::state::Estimate;
-use poecal_fit::uncertainty::{PriorInformation, View, leave_clusters_out};
+use poecal_fit::uncertainty::{FitView, PriorInformation, leave_clusters_out};
 use poecal_model::measurement::{ByQuantity, Noise};
 use poecal_numerics::error::Result;
 use poecal_numerics::solve;
 use rows::{Bounds, is_judgeable};
 pub(crate) use rows::{JudgingFit, judge_rows};
-use scale::{RowParts, Scale, parts, settle};
+use scale::{RobustScale, RowResiduals, parts, settle};
 
 /// Most reweightings with one loss.
 const REWEIGHTINGS: usize = 60;
@@ -34,27 +34,31 @@ const ITERATIONS: usize = 6;
 const SETTLED: f64 = 1e-3;
 
 /// A finished fit in the form by which rows are judged.
-fn judging(fitted: &Fitted) -> JudgingFit<'_> {
-    let Fitted { estimate, noise, normal, .. } = fitted;
+fn judging_fit(fitted: &FinishedFit) -> JudgingFit<'_> {
+    let FinishedFit { estimate, noise, normal, .. } = fitted;
     JudgingFit { estimate, noise: *noise, normal, unknowns: normal.dim() as f64 }
 }
 
 /// A fit with its loss, and every row of the data judged by it.
 #[derive(Clone)]
 pub(crate) struct RobustFit {
-    pub(crate) fitted: Fitted,
+    pub(crate) fitted: FinishedFit,
     pub(crate) robustness: Robustness,
 }
 
 /// Fits as the options state: by least squares, by a robust loss, or by Tukey's if least squares show outliers.
-pub(crate) fn fit(task: &Task<'_>, registration: &Registration<'_>, start: &Start) -> Result<RobustFit> {
-    let configurations = &Configurations::new(task.session.data, task.rows);
+pub(crate) fn fit(
+    task: &FitTask<'_>,
+    registration: &Registration<'_>,
+    start: &RegisteredStart,
+) -> Result<RobustFit> {
+    let configurations = &RepeatedConfigurations::new(task.session.data, task.rows);
     let attempt = |loss, other| attempt(task, configurations, registration, start, loss, other);
-    let ordinary = |found| ordinary(task, configurations, found, start);
+    let ordinary = |found| finish_least_squares(task, configurations, found, start);
     match task.options.robust {
-        Robust::Off => ordinary(task.first_fit(start)),
-        Robust::Loss(loss) => attempt(loss, None),
-        Robust::Auto => {
+        RobustLoss::Off => ordinary(task.first_fit(start)),
+        RobustLoss::Loss(loss) => attempt(loss, None),
+        RobustLoss::Auto => {
             let found = task.first_fit(start);
             if !shows_outliers(task, configurations, &found, start) {
                 return ordinary(found);
@@ -80,18 +84,23 @@ pub(crate) fn fit(task: &Task<'_>, registration: &Registration<'_>, start: &Star
 }
 
 /// Fits by least squares without some rows; these rows, and no others, are then suspected.
-pub(crate) fn fit_without(task: &Task<'_>, start: &Start, left_out: &[u32]) -> Result<RobustFit> {
+pub(crate) fn fit_without(
+    task: &FitTask<'_>,
+    start: &RegisteredStart,
+    left_out: &[u32],
+) -> Result<RobustFit> {
     let is_left_out = |row: &u32| left_out.binary_search(row).is_ok();
     let kept: Vec<u32> = task.rows.iter().copied().filter(|row| !is_left_out(row)).collect();
-    let of_kept = Task { rows: &kept, ..*task };
-    let fitted = of_kept.complete(of_kept.first_fit(start), start)?;
+    let of_kept = FitTask { rows: &kept, ..*task };
+    let fitted = of_kept.complete_first_fit(of_kept.first_fit(start), start)?;
     let count = u32::try_from(task.session.data.len()).unwrap_or(u32::MAX);
     let weights: Vec<f64> = (0..count).map(|row| f64::from(u8::from(!is_left_out(&row)))).collect();
-    let weighted = Task { weights: Some(&weights), ..*task };
-    let configurations = Configurations::new(task.session.data, task.rows);
-    let robustness = judge_rows(&weighted, &configurations, judging(&fitted), &weights, Some(Loss::Tukey));
+    let weighted = FitTask { weights: Some(&weights), ..*task };
+    let configurations = RepeatedConfigurations::new(task.session.data, task.rows);
+    let robustness =
+        judge_rows(&weighted, &configurations, judging_fit(&fitted), &weights, Some(Loss::Tukey));
     let suspected: Vec<bool> = (0..count).map(|row| is_left_out(&row)).collect();
-    Ok(RobustFit { fitted, robustness: robustness.suspecting(&suspected) })
+    Ok(RobustFit { fitted, robustness: robustness.with_suspects(&suspected) })
 }
 
 impl RobustFit {
@@ -102,12 +111,12 @@ impl RobustFit {
     }
 
     /// True if a fitted row is suspected.
-    fn is_evident(&self, task: &Task<'_>) -> bool {
+    fn is_evident(&self, task: &FitTask<'_>) -> bool {
         task.rows.iter().any(|&row| self.robustness.suspects_row(row))
     }
 
     /// True if it predicts held-out clusters of rows better than another fit, by a bounded loss.
-    fn predicts_better(&self, task: &Task<'_>, other: &RobustFit) -> bool {
+    fn predicts_better(&self, task: &FitTask<'_>, other: &RobustFit) -> bool {
         let scale = self.robustness.scale;
         let noise = ByQuantity::from_fn(|quantity| scale[quantity] * self.fitted.noise[quantity]);
         match (self.cross_validated_loss(task, noise), other.cross_validated_loss(task, noise)) {
@@ -117,13 +126,13 @@ impl RobustFit {
     }
 
     /// Mean bounded loss of the rows of each cluster of configurations by the fit of the others, in units of this noise.
-    fn cross_validated_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
-        let Fitted { estimate, layout, noise: own, .. } = &self.fitted;
+    fn cross_validated_loss(&self, task: &FitTask<'_>, noise: Noise) -> Option<f64> {
+        let FinishedFit { estimate, layout, noise: own, .. } = &self.fitted;
         let prior = task.prior.map(|(prior, _)| prior);
         let prior = PriorInformation::new(prior, estimate, layout, task.session.length_m);
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
         let weights: Vec<f64> = self.robustness.rows.iter().map(|row| row.weight).collect();
-        let view = View {
+        let view = FitView {
             session: task.session,
             rows: task.rows,
             free: &free,
@@ -136,9 +145,9 @@ impl RobustFit {
         let bound = Bounds::new(task.rows.len(), 1.0);
         leave_clusters_out(&view, &weights, |row, error| {
             let observation = task.session.observation(row);
-            let own = task.session.alike(observation, *error);
+            let own = task.session.equalize_noise(observation, *error);
             let squares = ByQuantity::from_fn(|quantity| own.square(quantity));
-            let whitened = task.session.whitened(observation, squares, noise);
+            let whitened = task.session.whiten_squares(observation, squares, noise);
             let square: f64 = whitened.iter().map(|(_, square)| square).sum();
             let ratio = square / bound.bound(error.dim()).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)
@@ -146,32 +155,32 @@ impl RobustFit {
     }
 
     /// True if the robust scale of position errors is larger than elastic gears and links explain.
-    fn is_suspicious(&self, task: &Task<'_>) -> bool {
+    fn is_suspicious(&self, task: &FitTask<'_>) -> bool {
         let parts = parts(&task.session, task.rows, &self.fitted.estimate, self.fitted.noise);
-        let scale = Scale::from_rows(parts.iter(), self.fitted.normal.dim() as f64);
+        let scale = RobustScale::from_rows(parts.iter(), self.fitted.normal.dim() as f64);
         task.is_suspicious(3f64.sqrt() * scale.of_lengths(self.fitted.noise))
     }
 }
 
 /// Completes a fit by least squares.
-fn ordinary(
-    task: &Task<'_>,
-    configurations: &Configurations,
+fn finish_least_squares(
+    task: &FitTask<'_>,
+    configurations: &RepeatedConfigurations,
     found: OngoingFit,
-    start: &Start,
+    start: &RegisteredStart,
 ) -> Result<RobustFit> {
-    let fitted = task.complete(found, start)?;
+    let fitted = task.complete_first_fit(found, start)?;
     let weights = vec![1.0; task.session.data.len()];
-    let robustness = judge_rows(task, configurations, judging(&fitted), &weights, None);
+    let robustness = judge_rows(task, configurations, judging_fit(&fitted), &weights, None);
     Ok(RobustFit { fitted, robustness })
 }
 
 /// True if any residual exceeds the 1/1000 quantile at the robust scale: a cheap screening, after which a robust fit decides.
 fn shows_outliers(
-    task: &Task<'_>,
-    configurations: &Configurations,
+    task: &FitTask<'_>,
+    configurations: &RepeatedConfigurations,
     found: &OngoingFit,
-    start: &Start,
+    start: &RegisteredStart,
 ) -> bool {
     let noise = start.noise;
     let unknowns = configurations.repeats * found.normal.dim() as f64;
@@ -179,7 +188,7 @@ fn shows_outliers(
     if !is_judgeable(parts.iter(), unknowns) {
         return false;
     }
-    let (_, scale) = settle(&mut parts, unknowns, noise, estimated(task, start.source));
+    let (_, scale) = settle(&mut parts, unknowns, noise, noise_options(task, start.source));
     let bounds = Bounds::new(task.rows.len(), 1.0);
     let shares = configurations.shares(&task.session, &found.estimate);
     task.rows.iter().zip(&parts).any(|(&row, part)| {
@@ -189,25 +198,26 @@ fn shows_outliers(
 }
 
 /// The options if the noise is to be estimated.
-fn estimated<'a>(task: &Task<'a>, source: NoiseSource) -> Option<&'a CalibrationOptions> {
+fn noise_options<'a>(task: &FitTask<'a>, source: NoiseSource) -> Option<&'a CalibrationOptions> {
     (source == NoiseSource::Estimated).then_some(task.options)
 }
 
 /// A robust fit: from a robust registration by Huber's loss, which adds no local minima, then by `loss`. `other` is a further start, tried if the
 /// robust scale is suspicious.
 fn attempt(
-    task: &Task<'_>,
-    configurations: &Configurations,
+    task: &FitTask<'_>,
+    configurations: &RepeatedConfigurations,
     registration: &Registration<'_>,
-    Start { registered, noise, source }: &Start,
+    RegisteredStart { registered, noise, source }: &RegisteredStart,
     loss: Loss,
     other: Option<&Estimate>,
 ) -> Result<RobustFit> {
     let source = *source;
-    let mut best = Reweighted::new(task, configurations, register_robustly(registration, registered), *noise);
+    let mut best =
+        ReweightedFit::new(task, configurations, register_robustly(registration, registered), *noise);
     best.run(task, Loss::Huber, source);
     if let Some(other) = other.filter(|_| task.is_suspicious(3f64.sqrt() * best.position_m())) {
-        let mut second = Reweighted::new(task, configurations, other.clone(), *noise);
+        let mut second = ReweightedFit::new(task, configurations, other.clone(), *noise);
         second.run(task, Loss::Huber, source);
         if second.position_m() < best.position_m() {
             best = second;
@@ -220,25 +230,30 @@ fn attempt(
 }
 
 /// A fit by reweighting.
-struct Reweighted<'c> {
-    configurations: &'c Configurations,
+struct ReweightedFit<'c> {
+    configurations: &'c RepeatedConfigurations,
     estimate: Estimate,
     noise: Noise,
-    scale: Scale,
+    scale: RobustScale,
     weights: Vec<f64>,
     iterations: usize,
     trace: Vec<f64>,
 }
 
-impl<'c> Reweighted<'c> {
-    fn new(task: &Task<'_>, configurations: &'c Configurations, mut start: Estimate, noise: Noise) -> Self {
+impl<'c> ReweightedFit<'c> {
+    fn new(
+        task: &FitTask<'_>,
+        configurations: &'c RepeatedConfigurations,
+        mut start: Estimate,
+        noise: Noise,
+    ) -> Self {
         start.recentre(&task.session, task.rows);
         let weights = vec![1.0; task.session.data.len()];
-        Reweighted {
+        ReweightedFit {
             configurations,
             estimate: start,
             noise,
-            scale: Scale(Noise::new(1.0, 1.0)),
+            scale: RobustScale(Noise::new(1.0, 1.0)),
             weights,
             iterations: 0,
             trace: Vec::new(),
@@ -251,19 +266,19 @@ impl<'c> Reweighted<'c> {
     }
 
     /// Number of unknowns, times the mean number of repeats: repeated rows add no information.
-    fn unknowns(&self, task: &Task<'_>) -> f64 {
+    fn unknowns(&self, task: &FitTask<'_>) -> f64 {
         self.configurations.repeats * task.problem(&self.estimate, self.noise).layout().dim() as f64
     }
 
     /// The task with the prior weighted by the robust scale.
-    fn with_prior_weight<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
+    fn with_prior_weight<'t>(&self, task: &FitTask<'t>, source: NoiseSource) -> FitTask<'t> {
         let variance = if source == NoiseSource::Estimated { 1.0 } else { self.scale.0.of_lengths().powi(2) };
         let weight = variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate));
-        task.with_prior_weight(task.counted(weight))
+        task.with_prior_weight(task.prior_weight(weight))
     }
 
     /// Reweights until the weights have settled.
-    fn run(&mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) {
+    fn run(&mut self, task: &FitTask<'_>, loss: Loss, source: NoiseSource) {
         let quick = CalibrationOptions {
             solver: solve::Options { iterations: ITERATIONS, ..task.options.solver },
             ..task.options.clone()
@@ -271,11 +286,11 @@ impl<'c> Reweighted<'c> {
         for _ in 0..REWEIGHTINGS {
             let mut parts = parts(&task.session, task.rows, &self.estimate, self.noise);
             let unknowns = self.unknowns(task);
-            (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, estimated(task, source));
+            (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, noise_options(task, source));
             if self.reweight(task, &parts, loss) < SETTLED {
                 break;
             }
-            let weighted = Task {
+            let weighted = FitTask {
                 weights: Some(&self.weights),
                 options: &quick,
                 ..self.with_prior_weight(task, source)
@@ -288,7 +303,7 @@ impl<'c> Reweighted<'c> {
     }
 
     /// Updates the weights of the fitted rows; returns the largest change.
-    fn reweight(&mut self, task: &Task<'_>, parts: &[RowParts], loss: Loss) -> f64 {
+    fn reweight(&mut self, task: &FitTask<'_>, parts: &[RowResiduals], loss: Loss) -> f64 {
         let mut change: f64 = 0.0;
         let shares = self.configurations.shares(&task.session, &self.estimate);
         for (&row, part) in task.rows.iter().zip(parts) {
@@ -301,8 +316,8 @@ impl<'c> Reweighted<'c> {
     }
 
     /// Completes the fit: noise from the rows that are not suspected, weights by it, and a fit with these to the optimum.
-    fn end(mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) -> Result<RobustFit> {
-        let bounds = Bounds::suspected(task.rows.len());
+    fn end(mut self, task: &FitTask<'_>, loss: Loss, source: NoiseSource) -> Result<RobustFit> {
+        let bounds = Bounds::suspicion_bounds(task.rows.len());
         let mut source = source;
         let mut found: Option<OngoingFit> = None;
         for _ in 0..ITERATIONS {
@@ -321,24 +336,25 @@ impl<'c> Reweighted<'c> {
                 .collect();
             if source == NoiseSource::Estimated {
                 let before = self.noise;
-                let of_kept = Task { rows: &kept, ..*task };
+                let of_kept = FitTask { rows: &kept, ..*task };
                 let unknowns = found.as_ref().map_or(unknowns, |found| of_kept.effective_unknowns(found));
                 let by_rotations =
                     found.as_ref().and_then(|found| of_kept.determined_by_rotations(found, before));
                 let session = &task.session;
                 match estimate_noise(session, &kept, &self.estimate, unknowns, by_rotations, before) {
-                    Some(noise) => self.noise = stated(task.options, noise),
+                    Some(noise) => self.noise = merge_stated_noise(task.options, noise),
                     None => source = NoiseSource::Exact,
                 }
                 parts = scale::parts(&task.session, task.rows, &self.estimate, self.noise);
             }
             let kept_parts = parts.iter().zip(task.rows).filter(|(_, row)| kept.binary_search(row).is_ok());
-            self.scale = Scale::from_rows(kept_parts.map(|(part, _)| part), unknowns).at_least_rounding(self.noise);
+            self.scale = RobustScale::from_rows(kept_parts.map(|(part, _)| part), unknowns)
+                .at_least_rounding(self.noise);
             let change = self.reweight(task, &parts, loss);
             if change < SETTLED && found.is_some() {
                 break;
             }
-            let weighted = Task { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
+            let weighted = FitTask { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
             let renewed = weighted.fit(self.estimate, self.noise);
             self.estimate = renewed.0.clone();
             match &mut found {
@@ -346,7 +362,7 @@ impl<'c> Reweighted<'c> {
                 None => found = Some(OngoingFit::new(renewed)),
             }
         }
-        let weighted = Task { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
+        let weighted = FitTask { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
         let mut found = match found {
             Some(found) => found,
             None => OngoingFit::new(weighted.fit(self.estimate, self.noise)),
@@ -355,7 +371,7 @@ impl<'c> Reweighted<'c> {
         found.report.trace.splice(0..0, self.trace);
         let fitted = weighted.finish(found, self.noise, source)?;
         let robustness =
-            judge_rows(&weighted, self.configurations, judging(&fitted), &self.weights, Some(loss));
+            judge_rows(&weighted, self.configurations, judging_fit(&fitted), &self.weights, Some(loss));
         Ok(RobustFit { fitted, robustness })
     }
 }

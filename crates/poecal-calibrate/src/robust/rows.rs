@@ -1,15 +1,15 @@
 //! Judgement of each row, and which rows are suspected (theory.md §6 (34d) to (34f)).
 
-use super::alike::TAILS;
-use super::{Configurations, Loss, RowParts, Scale, parts};
+use super::common_errors::TAILS;
+use super::{Loss, RepeatedConfigurations, RobustScale, RowResiduals, parts};
 use crate::SetAccuracy;
-use crate::run::located::located;
-use crate::run::task::Task;
+use crate::run::station_frames::locate_stations;
+use crate::run::task::FitTask;
 use poecal_fit::analysis::influence;
 use poecal_fit::state::Estimate;
 use poecal_model::measurement::{ByQuantity, Dataset, Noise};
 use poecal_numerics::distributions;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Probability that normal data have a row beyond the bound.
 const FAMILY: f64 = 1e-3;
@@ -40,7 +40,7 @@ pub struct Robustness {
 
 impl Robustness {
     /// The same with the errors on training and held-out rows without the suspected ones; `accuracy` computes those on some rows.
-    pub(crate) fn beside(
+    pub(crate) fn with_accuracy(
         self,
         [fitted, held_out]: [&[u32]; 2],
         accuracy: impl Fn(&[u32]) -> SetAccuracy,
@@ -54,7 +54,7 @@ impl Robustness {
     }
 
     /// The same with these rows suspected.
-    pub(crate) fn suspecting(mut self, suspected: &[bool]) -> Self {
+    pub(crate) fn with_suspects(mut self, suspected: &[bool]) -> Self {
         self.rows.iter_mut().zip(suspected).for_each(|(row, suspected)| row.suspected = *suspected);
         self
     }
@@ -82,7 +82,7 @@ impl Robustness {
     }
 
     /// Rows for registering device and targets: these without suspected ones, unless too few remain.
-    pub(crate) fn registrable(&self, rows: &[u32]) -> Vec<u32> {
+    pub(crate) fn registration_rows(&self, rows: &[u32]) -> Vec<u32> {
         let kept = self.rest(rows);
         if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }
     }
@@ -132,7 +132,7 @@ impl Bounds {
     }
 
     /// Bounds above which a row is suspected.
-    pub(crate) fn suspected(rows: usize) -> Self {
+    pub(crate) fn suspicion_bounds(rows: usize) -> Self {
         Bounds::new(rows, TAILS)
     }
 
@@ -142,8 +142,9 @@ impl Bounds {
 }
 
 /// True if there are enough numbers for a robust scale: twice the unknowns. Residuals of fewer reflect the fit, not the noise.
-pub(crate) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknowns: f64) -> bool {
-    parts.flat_map(RowParts::iter).map(|(_, part)| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
+pub(crate) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowResiduals>, unknowns: f64) -> bool {
+    parts.flat_map(RowResiduals::iter).map(|(_, part)| part.components).sum::<usize>() as f64
+        >= 2.0 * unknowns
 }
 
 /// A fit by which rows are judged.
@@ -154,55 +155,56 @@ pub(crate) struct JudgingFit<'a> {
     /// Noise of the fit.
     pub(crate) noise: Noise,
     /// Normal information at the estimate.
-    pub(crate) normal: &'a Normal,
+    pub(crate) normal: &'a NormalEquations,
     /// Number of unknowns that the rows determine.
     pub(crate) unknowns: f64,
 }
 
 /// Judges every row of the data by a fit with these weights; held-out rows have weight 0.
 pub(crate) fn judge_rows(
-    task: &Task<'_>,
-    configurations: &Configurations,
+    task: &FitTask<'_>,
+    configurations: &RepeatedConfigurations,
     fitted: JudgingFit<'_>,
     weights: &[f64],
     loss: Option<Loss>,
 ) -> Robustness {
     let all: Vec<u32> = task.session.data.all_rows();
-    let estimate = &*located(&task.session, task.rows, fitted.estimate, fitted.noise);
+    let estimate = &*locate_stations(&task.session, task.rows, fitted.estimate, fitted.noise);
     let mut fit_weights = vec![None; all.len()];
     task.rows.iter().for_each(|&row| fit_weights[row as usize] = Some(weights[row as usize]));
-    let rows = Rows {
+    let rows = JudgedData {
         parts: parts(&task.session, &all, estimate, fitted.noise),
         shares: configurations.shares(&task.session, estimate),
-        bounds: Bounds::suspected(all.len()),
+        bounds: Bounds::suspicion_bounds(all.len()),
         weights: fit_weights,
         all,
     };
     let unknowns = configurations.repeats * fitted.unknowns;
-    let robustness = |rows, scale: Scale| {
+    let robustness = |rows, scale: RobustScale| {
         let (training_rest, held_out_rest) = (None, None);
         Robustness { loss, rows, scale: scale.0, training_rest, held_out_rest }
     };
     let of_fit = || task.rows.iter().map(|&row| (row, &rows.parts[row as usize]));
-    let scale = Scale::from_rows(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    let scale =
+        RobustScale::from_rows(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
     if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
         let judged = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
         return robustness(rows.with_gross(judged, scale), scale);
     }
-    let judged = rows.judged(task, fitted, scale, loss);
+    let judged = rows.judge_rows(task, fitted, scale, loss);
     if !judged.iter().any(|row| row.suspected) {
         return robustness(judged, scale);
     }
     // Suspected rows widen their own scale: judge once more without them.
     let kept = of_fit().filter(|(row, _)| !judged[*row as usize].suspected);
-    let scale = Scale::from_rows(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
-    robustness(rows.judged(task, fitted, scale, loss), scale)
+    let scale = RobustScale::from_rows(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    robustness(rows.judge_rows(task, fitted, scale, loss), scale)
 }
 
 /// All rows of the data in their judgement.
-struct Rows {
+struct JudgedData {
     all: Vec<u32>,
-    parts: Vec<RowParts>,
+    parts: Vec<RowResiduals>,
     /// Share of each row's length that counts.
     shares: Vec<f64>,
     /// Weight of each row in the fit; `None` for a held-out row.
@@ -210,10 +212,10 @@ struct Rows {
     bounds: Bounds,
 }
 
-impl Rows {
+impl JudgedData {
     /// Suspects held-out rows that are gross compared with the others, for a fit with too few numbers for a judgement of its own rows: this
     /// comparison needs no scale.
-    fn with_gross(&self, mut judged: Vec<RowJudgement>, scale: Scale) -> Vec<RowJudgement> {
+    fn with_gross(&self, mut judged: Vec<RowJudgement>, scale: RobustScale) -> Vec<RowJudgement> {
         let held_out = || self.all.iter().filter(|row| self.weights[**row as usize].is_none());
         let middle = distributions::median(held_out().map(|&row| self.length(row, scale).0));
         let Some(middle) = middle.filter(|_| held_out().count() >= FEWEST_BESIDE) else { return judged };
@@ -224,17 +226,17 @@ impl Rows {
     }
 
     /// The part of a row's length that counts, at a scale, and the number of its components.
-    fn length(&self, row: u32, scale: Scale) -> (f64, usize) {
+    fn length(&self, row: u32, scale: RobustScale) -> (f64, usize) {
         let (length, components) = scale.length(&self.parts[row as usize]);
         (self.shares[row as usize] * length, components)
     }
 
     /// Every row judged at a scale.
-    fn judged(
+    fn judge_rows(
         &self,
-        task: &Task<'_>,
+        task: &FitTask<'_>,
         fitted: JudgingFit<'_>,
-        scale: Scale,
+        scale: RobustScale,
         loss: Option<Loss>,
     ) -> Vec<RowJudgement> {
         let judged = |&row: &u32| {
@@ -250,7 +252,7 @@ impl Rows {
         };
         let near: Vec<u32> = self.all.iter().copied().filter(is_near).collect();
         let counted: Vec<f64> = near.iter().map(|&row| self.weights[row as usize].unwrap_or(0.0)).collect();
-        let unweighted = Task { weights: None, ..*task };
+        let unweighted = FitTask { weights: None, ..*task };
         let problem = unweighted.problem(fitted.estimate, fitted.noise);
         let found = influence(&problem, fitted.estimate, fitted.normal, &near, &counted, |row, component| {
             component_scale(task.session.data, scale.0, row, component)

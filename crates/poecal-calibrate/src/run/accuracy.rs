@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::pixels::{PixelAccuracy, pixel_accuracy};
 use crate::steps::level::Gain;
 use poecal_fit::state::{Estimate, RowError, Session};
-use poecal_model::measurement::{Dataset, Measured, Quantity};
+use poecal_model::measurement::{Dataset, MeasuredQuantities, Quantity};
 use poecal_numerics::unit::Unit;
 
 /// The three models of every result, as estimates.
@@ -70,10 +70,10 @@ impl Statistic {
 ///
 /// ```
 /// # use poecal_calibrate::CalibrationOptions;
-/// # use poecal_model::measurement::Kind;
+/// # use poecal_model::measurement::SessionKind;
 /// # use poecal_model::simulate::{Simulation, elbow};
 /// # use poecal_calibrate::calibrate;
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let calibrated = calibration.accuracy.training.calibrated;
 /// assert!(calibrated.position_mm().rms < 0.1 && calibrated.rotation_deg().is_some());
@@ -83,7 +83,7 @@ impl Statistic {
 pub struct ModelAccuracy {
     /// Statistics of each measured quantity.
     #[serde(flatten)]
-    pub quantities: Measured<Statistic>,
+    pub quantities: MeasuredQuantities<Statistic>,
     /// Residuals of all rows measured by a device without a frame of its own, millimetres, for any quantity: the remaining violation of their
     /// constraint, as the error of a distance, the distance of a ball from the middle of its socket, or a height over its plane. Absent if there are
     /// none.
@@ -95,9 +95,9 @@ pub struct ModelAccuracy {
 }
 
 impl Deref for ModelAccuracy {
-    type Target = Measured<Statistic>;
+    type Target = MeasuredQuantities<Statistic>;
 
-    fn deref(&self) -> &Measured<Statistic> {
+    fn deref(&self) -> &MeasuredQuantities<Statistic> {
         &self.quantities
     }
 }
@@ -110,12 +110,13 @@ impl ModelAccuracy {
     }
 
     /// Error that judges the model on this number of rows.
-    pub(crate) fn judging(&self, rows: usize) -> JudgingError {
+    pub(crate) fn judging_error(&self, rows: usize) -> JudgingError {
         if let Some(pixels) = self.of_pictures(rows) {
             let (what, rms) = (CORNERS.to_owned(), pixels.rms_mm);
             return JudgingError { what, rms, unit: Unit::Metre };
         }
-        let (quantity, rms) = self.leading().map_or((Quantity::Position, 0.0), |(it, found)| (it, found.rms));
+        let (quantity, rms) =
+            self.leading_value().map_or((Quantity::Position, 0.0), |(it, found)| (it, found.rms));
         JudgingError { what: format!("{} error", quantity.name()), rms, unit: quantity.unit() }
     }
 }
@@ -144,8 +145,8 @@ impl JudgingError {
     }
 }
 
-impl From<Measured<Statistic>> for ModelAccuracy {
-    fn from(quantities: Measured<Statistic>) -> Self {
+impl From<MeasuredQuantities<Statistic>> for ModelAccuracy {
+    fn from(quantities: MeasuredQuantities<Statistic>) -> Self {
         ModelAccuracy { quantities, residual_mm: None, pixels: None }
     }
 }
@@ -153,7 +154,7 @@ impl From<Measured<Statistic>> for ModelAccuracy {
 impl ModelAccuracy {
     /// Root mean square of the leading quantity, metres, if it is a length.
     pub(crate) fn leading_m(&self) -> f64 {
-        let length = self.leading().filter(|(quantity, _)| quantity.unit() == Unit::Metre);
+        let length = self.leading_value().filter(|(quantity, _)| quantity.unit() == Unit::Metre);
         length.map_or(0.0, |(_, found)| 1e-3 * found.rms)
     }
 }
@@ -181,20 +182,20 @@ impl Improvement {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Improvements {
     /// Improvement by the calibrated model.
-    pub calibrated: Measured<Improvement>,
+    pub calibrated: MeasuredQuantities<Improvement>,
     /// Improvement by the corrected model; absent if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub corrected: Option<Measured<Improvement>>,
+    pub corrected: Option<MeasuredQuantities<Improvement>>,
 }
 
 /// Errors of the three models on one set of rows.
 ///
 /// ```
 /// # use poecal_calibrate::CalibrationOptions;
-/// # use poecal_model::measurement::Kind;
+/// # use poecal_model::measurement::SessionKind;
 /// # use poecal_model::simulate::{Simulation, elbow};
 /// # use poecal_calibrate::calibrate;
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let fitted = calibration.accuracy.training;
 /// assert!(fitted.calibrated.position_mm().rms < fitted.registered.position_mm().rms);
@@ -222,10 +223,10 @@ pub struct SetAccuracy {
 ///
 /// ```
 /// # use poecal_calibrate::CalibrationOptions;
-/// # use poecal_model::measurement::Kind;
+/// # use poecal_model::measurement::SessionKind;
 /// # use poecal_model::simulate::{Simulation, elbow};
 /// # use poecal_calibrate::calibrate;
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let accuracy = calibration.accuracy;
 /// assert_eq!((accuracy.training.count, accuracy.held_out.map(|set| set.count)), (28, Some(12)));
@@ -258,8 +259,8 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
 
 /// Statistics of one model's row errors.
 pub(crate) fn model_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) -> ModelAccuracy {
-    let quantities = Measured::from_fn(|quantity| {
-        let shown = |length: f64| quantity.unit().shown(length);
+    let quantities = MeasuredQuantities::from_fn(|quantity| {
+        let shown = |length: f64| quantity.unit().in_shown_unit(length);
         Statistic::from_errors(errors.iter().filter_map(|error| error.length(quantity).map(shown)).collect())
     });
     let constrained = errors.iter().filter_map(RowError::constraint_m);

@@ -2,18 +2,18 @@
 
 use wildmatch::WildMatch;
 
-use poecal_fit::parameters::{Block, Names};
+use poecal_fit::parameters::{Block, BlockNames};
 use poecal_fit::state::Unknowns;
 use poecal_model::camera::{PictureUnknown, Pictures, is_flat_sheet};
 use poecal_model::measurement::Dataset;
-use poecal_model::robot::{Argument, Gravity, GravityDirection, JointTerm, Robot, Statics, Term};
+use poecal_model::robot::{Gravity, GravityDirection, JointTerm, Robot, Statics, Term, TermArgument};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// Blocks that a message lists at most.
 const LISTED: usize = 12;
 
 /// Deviations of a fit's unknowns from the default: first the blocks of `fix` are held as in the model, then those of `free` are unknown. A word is a
-/// block's name ([`Names::name_of_block`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis; or one of `joints`
+/// block's name ([`BlockNames::name_of_block`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis; or one of `joints`
 /// (all axes), `targets` and `frames`. Further terms are unknown only by their exact names: harmonics (`joint2.sin1`), couplings (`joint3.coupled2`
 /// is the motion of joint3 by the second joint), and terms of weights or factors (`joint2.masses`).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -25,8 +25,8 @@ pub struct BlockChoice {
 }
 
 /// Names of a robot's joints, and of the targets and instruments of its measurements.
-pub fn names(robot: &Robot, data: &Dataset) -> Names {
-    Names {
+pub fn names(robot: &Robot, data: &Dataset) -> BlockNames {
+    BlockNames {
         joints: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
         targets: data.targets.clone(),
         stations: data.stations.clone(),
@@ -34,7 +34,7 @@ pub fn names(robot: &Robot, data: &Dataset) -> Names {
 }
 
 /// The blocks of a session; clocks only of instruments that measured in motion.
-fn blocks(names: &Names, data: &Dataset) -> Vec<Block> {
+fn blocks(names: &BlockNames, data: &Dataset) -> Vec<Block> {
     let is_there = |block: &Block| match block {
         Block::Clock(station, _) => data.moving.clock(*station).is_some(),
         Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) => true,
@@ -56,7 +56,8 @@ impl BlockChoice {
         let names = names(&robot, data);
         let mut found = robot;
         for word in &self.free {
-            let needs_more = |it: &(usize, Term)| it.1.needs_gravity() || it.1.argument() == Argument::Factor;
+            let needs_more =
+                |it: &(usize, Term)| it.1.needs_gravity() || it.1.argument() == TermArgument::Factor;
             let Some((joint, term)) = further_term(&names, word).filter(needs_more) else { continue };
             if term.needs_gravity() && found.gravity.is_none() {
                 let GravityDirection::Known(direction) = gravity else {
@@ -91,7 +92,7 @@ impl BlockChoice {
         let (mut further, mut pictures) = (Vec::new(), Vec::new());
         for (words, value) in [(&self.fix, false), (&self.free, true)] {
             for word in words {
-                let chosen = chosen(&names, &blocks, word);
+                let chosen = match_blocks(&names, &blocks, word);
                 if let Some(term) = further_term(&names, word).filter(|_| value && !chosen.contains(&true)) {
                     further.push(term);
                     continue;
@@ -129,10 +130,10 @@ impl BlockChoice {
     }
 
     /// Named targets, which are unknown regardless of their positions in the model; a star that means everything includes targets only incidentally.
-    fn open_targets(&self, names: &Names, blocks: &[Block]) -> Vec<usize> {
+    fn open_targets(&self, names: &BlockNames, blocks: &[Block]) -> Vec<usize> {
         let mut open = Vec::new();
         for word in &self.free {
-            let meant = || blocks.iter().zip(chosen(names, blocks, word)).filter(|it| it.1);
+            let meant = || blocks.iter().zip(match_blocks(names, blocks, word)).filter(|it| it.1);
             if meant().all(|(block, _)| matches!(block, Block::Target(_))) {
                 open.extend(meant().filter_map(|(block, _)| match block {
                     Block::Target(target) => Some(*target),
@@ -153,7 +154,7 @@ pub(crate) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
     let names = names(robot, data);
     let blocks = names.blocks();
     let frees = |word: &&String| {
-        let chosen = chosen(&names, &blocks, word);
+        let chosen = match_blocks(&names, &blocks, word);
         // A star that means everything includes frames only incidentally.
         let others = chosen.iter().zip(&blocks).any(|(is, block)| *is && !matches!(block, Block::Frame(_)));
         !others && chosen.contains(&true)
@@ -205,22 +206,23 @@ fn picture_unknowns(data: &Dataset, word: &str) -> Vec<PictureUnknown> {
 }
 
 /// A term by its exact name that is a block only on request.
-fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
+fn further_term(names: &BlockNames, word: &str) -> Option<(usize, Term)> {
     let (joint, term) = word.rsplit_once('.')?;
     let joint = names.joints.iter().position(|name| name == joint)?;
     let term: Term = term.parse().ok()?;
-    let is_other = term.argument() != Argument::OtherJoint || term.index() != joint;
+    let is_other = term.argument() != TermArgument::OtherJoint || term.index() != joint;
     (is_other && term.is_of(names.joints.len(), usize::MAX)).then_some((joint, term))
 }
 
 /// Marks each block that a word means.
-fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
+fn match_blocks(names: &BlockNames, blocks: &[Block], word: &str) -> Vec<bool> {
     let pattern = WildMatch::new(word);
     let is_meant = |block: &Block| match (word, block) {
         ("joints", Block::Axis(_)) | ("targets", Block::Target(_)) | ("frames", Block::Frame(_)) => true,
         (_, Block::Axis(joint)) => {
             let is_joint = names.joints.get(*joint).is_some_and(|name| name == word);
-            is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.name_of_block(*block))
+            is_joint && !["targets", "frames"].contains(&word)
+                || pattern.matches(&names.name_of_block(*block))
         }
         // The name of the term alone means the blocks of all instruments.
         (_, Block::Range(_, term)) => {
@@ -229,7 +231,9 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
         (_, Block::Clock(_, term)) => {
             word == term.name() || word != "*" && pattern.matches(&names.name_of_block(*block))
         }
-        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.name_of_block(*block)),
+        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => {
+            pattern.matches(&names.name_of_block(*block))
+        }
     };
     blocks.iter().map(is_meant).collect()
 }
@@ -239,8 +243,9 @@ fn no_range(name: &str) -> Error {
         .error(format!("found `{name}` to be fitted, expected an instrument that measures distances alone"))
 }
 
-fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
-    let mut listed: Vec<String> = blocks.iter().take(LISTED).map(|block| names.name_of_block(*block)).collect();
+fn unknown_word(names: &BlockNames, blocks: &[Block], word: &str) -> Error {
+    let mut listed: Vec<String> =
+        blocks.iter().take(LISTED).map(|block| names.name_of_block(*block)).collect();
     if blocks.len() > LISTED {
         let last = blocks.last().map(|block| names.name_of_block(*block));
         listed.push("…".to_owned());
@@ -257,7 +262,7 @@ fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
 fn sort_blocks<'a>(
     unknowns: &mut Unknowns,
     blocks: impl Iterator<Item = (Block, &'a bool)>,
-    (names, data): (&Names, &Dataset),
+    (names, data): (&BlockNames, &Dataset),
 ) -> Result<()> {
     for (block, is_free) in blocks {
         match block {

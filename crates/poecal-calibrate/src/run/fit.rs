@@ -1,13 +1,13 @@
 //! The fit of the screws: its unknowns, and one minimisation.
 
-use super::located::stations_to_locate;
+use super::station_frames::stations_to_locate;
 use crate::{CalibrationOptions, Formulation};
-use poecal_fit::parameters::{Parameter, Subject, ValueTerm, screw_axes};
+use poecal_fit::parameters::{Parameter, ParameterSubject, ValueTerm, screw_axes};
 use poecal_fit::problem::{Layout, Prior, Problem};
 use poecal_fit::start::{clock_parameters, device_parameter, range_parameters, target_parameters};
 use poecal_fit::state::{Estimate, Session, sample_rows};
 use poecal_model::measurement::Noise;
-use poecal_numerics::solve::{LeastSquares as _, Normal, Options, Summary};
+use poecal_numerics::solve::{LeastSquares as _, NormalEquations, Options, Summary};
 
 /// A fit of many rows begins on a subsample with at least this number of rows, for each unknown, and times the root of the number of rows. After
 /// that, one step with the first `JᵀJ` of all rows nearly suffices, for any number of rows.
@@ -35,13 +35,16 @@ pub fn free_parameters(
     let absent = stations_to_locate(data, rows);
     let is_free = |station: &usize| {
         unknowns.moves_frame(*station)
-            && estimate.tree.shared(*station).is_none()
+            && estimate.tree.shared_target(*station).is_none()
             && !absent.contains(station)
     };
     let frames = stations.filter(is_free).map(|station| device_parameter(data, station, rows));
     let is_free = |parameter: &Parameter| match parameter.model().subject() {
-        Subject::Joint(joint) => unknowns.moves_axis(joint),
-        Subject::Instrument(_) | Subject::Target(_) | Subject::Range(_) | Subject::Clock(_) => true,
+        ParameterSubject::Joint(joint) => unknowns.moves_axis(joint),
+        ParameterSubject::Instrument(_)
+        | ParameterSubject::Target(_)
+        | ParameterSubject::Range(_)
+        | ParameterSubject::Clock(_) => true,
     };
     let ranges = range_parameters(session, rows).filter(|it| !absent.contains(&it.station));
     let ranges = ranges.map(Parameter::RangeUnknown);
@@ -69,7 +72,7 @@ pub fn fit_screws(
     noise: Noise,
     prior: Option<(&Prior, f64)>,
     options: &CalibrationOptions,
-) -> (Estimate, Normal, Summary) {
+) -> (Estimate, NormalEquations, Summary) {
     let Formulation { joint_parameters, minimize, .. } = options.formulation;
     let free = free_parameters(&session, &start, rows, joint_parameters(start.kinds()));
     let problem = |rows: Vec<u32>| Problem::new(session, rows, free.clone(), noise).with_prior(prior);
@@ -96,12 +99,12 @@ pub fn fit_screws(
 }
 
 /// Layout and normal information of an estimate in the minimal basis.
-pub(crate) fn minimal(
+pub(crate) fn minimal_layout(
     session: Session<'_>,
     rows: &[u32],
     estimate: &Estimate,
     noise: Noise,
-) -> (Layout, Normal) {
+) -> (Layout, NormalEquations) {
     let free = free_parameters(&session, estimate, rows, screw_axes(estimate.kinds()));
     let problem = Problem::new(session, rows.to_vec(), free, noise);
     (problem.layout().clone(), problem.normal(estimate))

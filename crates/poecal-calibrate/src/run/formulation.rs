@@ -5,10 +5,10 @@ use poecal_fit::problem::Problem;
 use poecal_fit::state::Estimate;
 use poecal_model::measurement::PoseResidual;
 use poecal_model::robot::JointKind;
-use poecal_numerics::solve::{Normal, Options, Summary, minimize};
+use poecal_numerics::solve::{NormalEquations, Options, Summary, minimize};
 
 /// Result of one minimisation: estimate, normal information, summary.
-pub type Minimum = (Estimate, Normal, Summary);
+pub type Minimum = (Estimate, NormalEquations, Summary);
 
 /// Minimises a problem from a start.
 pub type Minimize = fn(&Problem<'_>, Estimate, &Options) -> Minimum;

@@ -13,7 +13,7 @@ pub(crate) const ROUNDS: usize = 4;
 
 /// Residuals of one quantity and instrument, whitened by the noise of the fit.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct NoiseSum {
     squares: f64,
     count: usize,
 }
@@ -23,7 +23,7 @@ struct Sum {
 pub(crate) fn noise_ratios(session: &Session<'_>, rows: &[u32], fit: &RobustFit) -> Option<Vec<Noise>> {
     let stations = session.data.station_count();
     let rows: Vec<u32> = fit.robustness.rest(rows);
-    let mut sums: Vec<ByQuantity<Sum>> = vec![ByQuantity::default(); stations];
+    let mut sums: Vec<ByQuantity<NoiseSum>> = vec![ByQuantity::default(); stations];
     let squares = session
         .map_squares(&rows, &fit.fitted.estimate, |observation, squares| (observation.station, squares));
     for (&row, (station, squares)) in rows.iter().zip(squares) {

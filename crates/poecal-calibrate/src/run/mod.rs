@@ -2,22 +2,22 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod blocks;
+pub(crate) mod calibrated_places;
 pub(crate) mod count;
 pub(crate) mod fit;
 pub(crate) mod formulation;
 pub(crate) mod instrument_noise;
-pub(crate) mod located;
 pub(crate) mod noise;
+pub(crate) mod option_conflicts;
 pub(crate) mod options;
 pub(crate) mod pixels;
-pub(crate) mod placed;
-pub(crate) mod pull;
-pub(crate) mod refused;
+pub(crate) mod prior_bias;
 pub(crate) mod restart;
 pub(crate) mod rounding;
-mod ruined;
+mod ruinous_rows;
 pub(crate) mod split;
 pub(crate) mod stage;
+pub(crate) mod station_frames;
 pub(crate) mod stations;
 pub(crate) mod target_prior;
 pub(crate) mod task;
@@ -26,16 +26,17 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::{
-    CalibrationOptions, Corrections, DeviceFrameKnowledge, NoiseSource, delivered, estimate_noise, split_rows,
+    CalibrationOptions, Corrections, DeviceFrameKnowledge, NoiseSource, estimate_noise, nominal_estimate,
+    split_rows,
 };
 use crate::run::blocks::refuse_frames;
 use crate::run::count::check_count;
-use crate::run::refused::allowed_corrections;
+use crate::run::option_conflicts::allowed_corrections;
 use crate::run::stations::{check_length, check_stations};
-use crate::steps::found::Start;
+use crate::steps::fit_progress::RegisteredStart;
 use poecal_fit::problem::Prior;
 use poecal_fit::start::{Registration, register, register_again};
-use poecal_fit::state::{Estimate, Packed, Session, Unknowns};
+use poecal_fit::state::{Estimate, PackedValues, Session, Unknowns};
 use poecal_model::measurement::{Dataset, Noise, PoseResidual};
 use poecal_model::robot::{Robot, TermGroup, Tolerance};
 use poecal_numerics::error::Result;
@@ -43,7 +44,7 @@ use poecal_numerics::threads;
 
 /// A session, ready for a fit.
 #[derive(Clone)]
-pub(crate) struct Run<'a> {
+pub(crate) struct CalibrationRun<'a> {
     /// The measurements as they are fitted: the supplied ones, or as they would be without events.
     pub(crate) data: Cow<'a, Dataset>,
     /// The nominal robot.
@@ -52,7 +53,7 @@ pub(crate) struct Run<'a> {
     /// Terms that are fitted beside the screws.
     pub(crate) corrections: Corrections,
     /// Joint values of the measurements with their sines and cosines.
-    pub(crate) packed: Arc<Packed>,
+    pub(crate) packed: Arc<PackedValues>,
     pub(crate) unknowns: Unknowns,
     pub(crate) delivered: Estimate,
     /// Prior of the fit.
@@ -68,8 +69,12 @@ pub(crate) struct Run<'a> {
 }
 
 /// The nominal estimate, with held frames as in an earlier calibration.
-fn started(robot: &Robot, data: &Dataset, (options, unknowns): (&CalibrationOptions, &Unknowns)) -> Estimate {
-    let mut start = delivered(robot, data);
+fn initial_estimate(
+    robot: &Robot,
+    data: &Dataset,
+    (options, unknowns): (&CalibrationOptions, &Unknowns),
+) -> Estimate {
+    let mut start = nominal_estimate(robot, data);
     for (station, device) in options.devices.iter().enumerate().take(data.station_count()) {
         if !unknowns.moves_frame(station) {
             *start.device_mut(station) = device.inverse();
@@ -78,7 +83,7 @@ fn started(robot: &Robot, data: &Dataset, (options, unknowns): (&CalibrationOpti
     start
 }
 
-impl<'a> Run<'a> {
+impl<'a> CalibrationRun<'a> {
     /// Splits the rows; refuses problems that cannot be fitted. The rows `left_out`, in order, are suspected from the beginning.
     pub(crate) fn new(
         robot: &Robot,
@@ -86,10 +91,10 @@ impl<'a> Run<'a> {
         options: &CalibrationOptions,
         left_out: Vec<u32>,
     ) -> Result<Self> {
-        let data = written(data, options.formulation.pose_residual);
+        let data = formulate_data(data, options.formulation.pose_residual);
         let robot = about_mean_factors(robot, &data);
         let robot = options.blocks.with_terms(robot, &data, options.gravity)?;
-        let packed = Arc::new(threads::in_pool(data.len(), || Packed::from_dataset(&robot, &data)));
+        let packed = Arc::new(threads::in_pool(data.len(), || PackedValues::from_dataset(&robot, &data)));
         if options.frame == DeviceFrameKnowledge::Base {
             refuse_frames(&options.blocks, &robot, &data)?;
         }
@@ -101,9 +106,9 @@ impl<'a> Run<'a> {
         check_stations(&data, [&fit_rows, &held_out_rows], options, &unknowns)?;
         check_count(&session, &fit_rows)?;
         check_length(&session, options, &fit_rows)?;
-        Ok(Run {
+        Ok(CalibrationRun {
             corrections: allowed_corrections(&robot, &unknowns, options)?,
-            delivered: started(&robot, &data, (options, &unknowns)),
+            delivered: initial_estimate(&robot, &data, (options, &unknowns)),
             prior: options.prior(&session),
             length_m: session.length_m,
             open_targets_m: None,
@@ -122,17 +127,17 @@ impl<'a> Run<'a> {
     /// The same with another tolerance.
     pub(crate) fn with_tolerance(&self, tolerance: Tolerance) -> Self {
         let options = CalibrationOptions { tolerance: Some(tolerance), ..self.options.clone() };
-        Run { prior: options.prior(&self.session(&[])), options, ..self.clone() }
+        CalibrationRun { prior: options.prior(&self.session(&[])), options, ..self.clone() }
     }
 
     /// The same with these rows left out, in order.
     pub(crate) fn leaving_out(&self, left_out: Vec<u32>) -> Self {
-        Run { left_out, ..self.clone() }
+        CalibrationRun { left_out, ..self.clone() }
     }
 
     /// Robot and measurements, with the noises of the instruments.
     pub(crate) fn session<'s>(&'s self, noise_ratios: &'s [Noise]) -> Session<'s> {
-        let Run { robot, data, packed, length_m, device_free, unknowns, .. } = self;
+        let CalibrationRun { robot, data, packed, length_m, device_free, unknowns, .. } = self;
         Session {
             robot,
             data,
@@ -160,12 +165,12 @@ impl<'a> Run<'a> {
     }
 
     /// Device frame and targets with nominal screws, and the noise estimated from their residuals unless stated.
-    pub(crate) fn register(&self) -> Start {
+    pub(crate) fn register(&self) -> RegisteredStart {
         self.register_by(&self.fit_rows)
     }
 
     /// The same by some of the rows.
-    fn register_by(&self, rows: &[u32]) -> Start {
+    fn register_by(&self, rows: &[u32]) -> RegisteredStart {
         self.in_pool(|| {
             let session = self.session(&[]);
             let (mut noise, source) = noise::first_guess(&self.data, &self.options);
@@ -174,10 +179,10 @@ impl<'a> Run<'a> {
             if source == NoiseSource::Estimated
                 && let Some(found) = estimate_noise(&session, rows, &registered, 6.0, None, noise)
             {
-                noise = noise::stated(&self.options, found);
+                noise = noise::merge_stated_noise(&self.options, found);
             }
             let registered = register_again(&of(noise).weighed_by(&registered), &registered);
-            Start { registered, noise, source }
+            RegisteredStart { registered, noise, source }
         })
     }
 }
@@ -198,7 +203,7 @@ fn about_mean_factors(robot: &Robot, data: &Dataset) -> Robot {
 }
 
 /// The data with the residual of measured frames replaced.
-pub(crate) fn written<'a>(
+pub(crate) fn formulate_data<'a>(
     data: Cow<'a, Dataset>,
     pose_residual: Option<&'static dyn PoseResidual>,
 ) -> Cow<'a, Dataset> {

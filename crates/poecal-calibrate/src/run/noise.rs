@@ -59,7 +59,7 @@ pub(crate) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
             }
         }
     }
-    (stated(options, noise), source)
+    (merge_stated_noise(options, noise), source)
 }
 
 /// Marks each quantity whose noise is stated, by the options or by every row that has it.
@@ -71,7 +71,7 @@ pub(crate) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> ByQuant
 }
 
 /// Estimated noise, with stated components in their place.
-pub(crate) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
+pub(crate) fn merge_stated_noise(options: &CalibrationOptions, found: Noise) -> Noise {
     ByQuantity::from_fn(|quantity| options.sigma[quantity].unwrap_or(found[quantity]))
 }
 
@@ -87,7 +87,7 @@ pub fn estimate_noise(
     before: Noise,
 ) -> Option<Noise> {
     let squares = session.map_squares(rows, estimate, |_, squares| squares);
-    let mut shares: ByQuantity<Share> = ByQuantity::default();
+    let mut shares: ByQuantity<NoiseShare> = ByQuantity::default();
     let mut stated = 0;
     for (&row, squares) in rows.iter().zip(squares) {
         for (quantity, share) in shares.values_mut() {
@@ -114,10 +114,10 @@ pub fn estimate_noise(
         let of_all = |all: usize| share.count as f64 / all.max(1) as f64;
         match (determined_by_rotations, quantity.unit()) {
             (Some(of_angles), Unit::Metre) if stated == 0 => {
-                share.less((unknowns - of_angles) * of_all(lengths), 0.0)
+                share.corrected_deviation((unknowns - of_angles) * of_all(lengths), 0.0)
             }
             (Some(of_angles), Unit::Radian) if stated == 0 => {
-                share.less(of_angles * of_all(angles), turned as f64)
+                share.corrected_deviation(of_angles * of_all(angles), turned as f64)
             }
             (_, Unit::Metre) => share.deviation(0, others),
             (_, Unit::Radian | Unit::One | Unit::Second) => share.deviation(turned, others),
@@ -134,14 +134,14 @@ pub fn estimate_noise(
 
 /// Residuals of one noise.
 #[derive(Clone, Copy, Default)]
-struct Share {
+struct NoiseShare {
     squares: f64,
     count: usize,
 }
 
-impl Share {
+impl NoiseShare {
     /// Standard deviation, corrected for this number of unknowns; `None` if too few residuals remain beyond `own`.
-    fn less(&self, unknowns: f64, own: f64) -> Option<f64> {
+    fn corrected_deviation(&self, unknowns: f64, own: f64) -> Option<f64> {
         let redundancy = (self.count as f64 - unknowns).max(1.0);
         (self.count as f64 - own >= REDUNDANT).then(|| (self.squares / redundancy).sqrt())
     }

@@ -7,10 +7,10 @@ use poecal_arm::lie::Pose;
 use poecal_fit::problem::Prior;
 use poecal_fit::state::Session;
 use poecal_model::measurement::ByQuantity;
-use poecal_model::robot::{Extent, GravityDirection, Tolerance};
+use poecal_model::robot::{CorrectionExtent, GravityDirection, Tolerance};
 use poecal_numerics::solve;
 
-use crate::{AcceptanceLimits, BlockChoice, Corrections, Formulation, RepairLimits, Repairs, Robust};
+use crate::{AcceptanceLimits, BlockChoice, Corrections, Formulation, RepairLimits, Repairs, RobustLoss};
 
 /// Prior knowledge of the measuring device's frame.
 ///
@@ -76,7 +76,7 @@ pub struct CalibrationOptions {
     /// Direction of gravity.
     pub gravity: GravityDirection,
     /// Treatment of outliers.
-    pub robust: Robust,
+    pub robust: RobustLoss,
     /// True if the one target, which no row names, becomes the tip: the model ends in its reflector. Otherwise the tip stays on the last link as in
     /// the model, and the measured target is [`MEASURED`](poecal_model::robot::MEASURED).
     pub move_tip: bool,
@@ -107,9 +107,9 @@ impl Default for CalibrationOptions {
             tolerance: Some(Tolerance::default()),
             chooses_tolerance: false,
             corrections: Corrections::default(),
-            harmonics: Extent::default().orders,
+            harmonics: CorrectionExtent::default().orders,
             gravity: GravityDirection::default(),
-            robust: Robust::default(),
+            robust: RobustLoss::default(),
             move_tip: false,
             repair: Repairs::default(),
             repair_limits: RepairLimits::default(),

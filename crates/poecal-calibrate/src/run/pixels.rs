@@ -101,7 +101,7 @@ pub(crate) fn predicted_picture<'a>(
 ) -> Option<(&'a Picture, Pose)> {
     let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
     let measured = data.observations.get(row as usize)?.measurement.pose();
-    Some((picture, picture.directed(&predicted_pose(&measured, error))))
+    Some((picture, picture.directed_measurement(&predicted_pose(&measured, error))))
 }
 
 /// Number of the corners of a row, and the errors of those that the model sees; `None` if the row is not a picture.
@@ -111,10 +111,10 @@ fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Ve
 }
 
 /// Pixel of a corner, and its deviation from the model's prediction; `None` if the model does not see it.
-pub(crate) type SeenPixel = (Vector2<f64>, Option<Vector2<f64>>);
+pub(crate) type PixelError = (Vector2<f64>, Option<Vector2<f64>>);
 
 /// Pixel of each corner of a row that has weight, and its deviation by the error of the row, if it is visible; `None` if the row is not a picture.
-pub(crate) fn seen_pixels(data: &Dataset, row: u32, error: &RowError) -> Option<Vec<SeenPixel>> {
+pub(crate) fn seen_pixels(data: &Dataset, row: u32, error: &RowError) -> Option<Vec<PixelError>> {
     let (picture, pose) = predicted_picture(data, row, error)?;
     let errors = data.pictures.view(picture)?.errors(&pose);
     let own = picture.corners.iter().zip(errors).filter(|(corner, _)| corner.weight > 0.0);

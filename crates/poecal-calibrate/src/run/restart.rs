@@ -3,20 +3,20 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::task::Task;
-use crate::delivered;
-use crate::steps::found::SolverReport;
+use super::task::FitTask;
+use crate::nominal_estimate;
+use crate::steps::fit_progress::SolverReport;
 use poecal_fit::gauge;
 use poecal_fit::problem::Problem;
 use poecal_fit::state::{Estimate, Session, rms_m, sample_rows};
 use poecal_model::measurement::Noise;
 use poecal_model::simulate::random;
-use poecal_numerics::solve::{LeastSquares as _, Normal, Options};
+use poecal_numerics::solve::{LeastSquares as _, NormalEquations, Options};
 
 /// Rows on which further starts are compared.
 const RESTART_SAMPLE: usize = 200;
 
-impl Task<'_> {
+impl FitTask<'_> {
     /// Further starts if the error suggests a local minimum: random screws around the registered ones, on a subsample. Returns a clearly
     /// better start, if one was found, and the number of starts.
     pub(crate) fn restart(
@@ -27,7 +27,8 @@ impl Task<'_> {
     ) -> Option<(Option<Estimate>, usize)> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
-            Problem::new(self.session, sample.clone(), self.free(estimate), noise).with_prior(self.prior)
+            Problem::new(self.session, sample.clone(), self.free_parameters(estimate), noise)
+                .with_prior(self.prior)
         };
         if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
             return None;
@@ -40,7 +41,7 @@ impl Task<'_> {
         while tried < self.options.restarts {
             tried += 1;
             let scale = [0.05, 0.1, 0.2, 0.4][tried % 4];
-            let start = self.scattered(registered, scale, &mut generator);
+            let start = self.scatter_axes(registered, scale, &mut generator);
             let (found, normal, _) = self.minimize(&problem(&start), start, &options);
             if normal.cost < best.0 {
                 best.0 = 0.999 * normal.cost;
@@ -60,7 +61,7 @@ impl Task<'_> {
     }
 
     /// The estimate with every axis tilted by about `scale` radians and shifted by as much of the arm's length.
-    fn scattered(&self, estimate: &Estimate, scale: f64, generator: &mut ChaCha8Rng) -> Estimate {
+    fn scatter_axes(&self, estimate: &Estimate, scale: f64, generator: &mut ChaCha8Rng) -> Estimate {
         let layout = self.problem(estimate, Noise::new(1.0, 1.0)).layout().clone();
         let step: Vec<f64> =
             (0..layout.dim()).map(|_| scale * self.session.length_m * random::normal(generator)).collect();
@@ -72,18 +73,18 @@ impl Task<'_> {
     pub(crate) fn settle_null_directions(
         &self,
         estimate: Estimate,
-        normal: Normal,
+        normal: NormalEquations,
         noise: Noise,
         report: &mut SolverReport,
-    ) -> (Estimate, Normal) {
+    ) -> (Estimate, NormalEquations) {
         let (mut estimate, mut normal) = (estimate, normal);
         let Session { robot, data, length_m, .. } = self.session;
         let base_free = self.session.base_free();
-        let targets = delivered(robot, data).base_from_target;
+        let targets = nominal_estimate(robot, data).base_from_target;
         for _ in 0..8 {
             if base_free {
                 let motion = gauge::base_motion(&estimate, robot, &targets, length_m);
-                estimate = estimate.rebased(&motion);
+                estimate = estimate.rebase(&motion);
             }
             let problem = self.problem(&estimate, noise);
             let layout = problem.layout();

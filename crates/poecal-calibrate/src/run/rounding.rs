@@ -4,7 +4,7 @@ use poecal_fit::state::{Rounding, Session};
 use poecal_numerics::error::first_few;
 
 /// Reports rounded readings and their effect at the tip, if `left_m` (RMS) is at least half of it.
-pub(crate) fn rounded(session: &Session<'_>, left_m: f64) -> Option<String> {
+pub(crate) fn describe_rounding(session: &Session<'_>, left_m: f64) -> Option<String> {
     let Rounding { names, step, unit, place_m2, .. } = Rounding::from_session(session, left_m)?;
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     Some(format!(

@@ -57,12 +57,12 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Re
     let seen = |row: u32| &data.observations[row as usize].measurement;
     let is_held_out = |row: &u32| held_out[*row as usize];
     let is_copy = |row: u32, other: u32| {
-        let apart = seen(row).apart(seen(other));
+        let apart = seen(row).distance_and_angle(seen(other));
         let targets = [row, other].map(|row| data.observations[row as usize].target);
         targets[0] == targets[1] && apart.is_some_and(|(apart, turned)| apart < SAME && turned < SAME)
     };
     let mut copies: Vec<(u32, u32)> = Vec::new();
-    for group in data.alike(&data.all_rows(), SAME, 2, |_| 0) {
+    for group in data.group_similar(&data.all_rows(), SAME, 2, |_| 0) {
         let (judging, fitted): (Vec<u32>, Vec<u32>) = group.into_iter().partition(is_held_out);
         copies.extend(
             judging
@@ -112,7 +112,7 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     // Keyed by the first row, so that the choice does not depend on the values of the readings.
     let mut configurations = data.all_rows();
     let mut configuration = configurations.clone();
-    for group in data.grouped(&configurations) {
+    for group in data.group_configurations(&configurations) {
         group.iter().for_each(|&row| configuration[row as usize] = group[0]);
     }
     in_motion_together(data, &mut configuration);

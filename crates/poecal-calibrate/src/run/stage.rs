@@ -2,7 +2,7 @@
 
 /// A step of a calibration, for progress messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum CalibrationStage {
     /// Fitting device frame and targets.
     Registration,
     /// Fitting the screws.
@@ -13,18 +13,23 @@ pub enum Stage {
     Analysis,
 }
 
-impl Stage {
+impl CalibrationStage {
     /// All stages in order.
-    pub const ALL: [Stage; 4] = [Stage::Registration, Stage::Fit, Stage::Corrections, Stage::Analysis];
+    pub const ALL: [CalibrationStage; 4] = [
+        CalibrationStage::Registration,
+        CalibrationStage::Fit,
+        CalibrationStage::Corrections,
+        CalibrationStage::Analysis,
+    ];
 
     /// Message for users.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
-            Stage::Registration => "finding the device frame and the targets",
-            Stage::Fit => "fitting the screws",
-            Stage::Corrections => "fitting what the joints do beyond geometry",
-            Stage::Analysis => "judging the result",
+            CalibrationStage::Registration => "finding the device frame and the targets",
+            CalibrationStage::Fit => "fitting the screws",
+            CalibrationStage::Corrections => "fitting what the joints do beyond geometry",
+            CalibrationStage::Analysis => "judging the result",
         }
     }
 }

@@ -11,7 +11,7 @@ use poecal_numerics::error::{ErrorKind, Result};
 const FEWEST_ROWS: usize = 3;
 
 /// Fewest rows that determine the observable part of a station's frame.
-fn fewest(data: &Dataset, station: usize, rows: &[u32]) -> usize {
+fn minimum_rows(data: &Dataset, station: usize, rows: &[u32]) -> usize {
     let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.dim()).max();
     let freedom = data.device_freedom(station, rows);
     if freedom == Freedom::FRAME { FEWEST_ROWS } else { freedom.count().div_ceil(numbers.unwrap_or(1)) }
@@ -38,7 +38,7 @@ pub(crate) fn check_stations(
         let (own, judging) = (data.seen_from(station, fitted), data.seen_from(station, held_out));
         // A station that only held-out rows name is determined from these.
         let rows = if own.is_empty() { judging } else { own };
-        let needed = fewest(data, station, &rows);
+        let needed = minimum_rows(data, station, &rows);
         if rows.len() >= needed {
             continue;
         }

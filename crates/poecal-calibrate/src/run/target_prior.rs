@@ -1,12 +1,12 @@
 //! Prior of targets' positions near nominal, if the rows leave the positions undetermined: theory.md §6, *Targets*.
 
-use super::Run;
+use super::CalibrationRun;
 use crate::robust::RobustFit;
-use crate::steps::found::{Fitted, Start};
+use crate::steps::fit_progress::{FinishedFit, RegisteredStart};
 use poecal_fit::problem::{Prior, Problem};
 use poecal_model::measurement::Noise;
 use poecal_numerics::linalg;
-use poecal_numerics::solve::{LeastSquares as _, Normal};
+use poecal_numerics::solve::{LeastSquares as _, NormalEquations};
 
 /// Prior standard deviations of targets' positions that are tried before the widest, metres.
 const SIGMAS_M: [f64; 3] = [0.02, 0.06, 0.2];
@@ -20,18 +20,18 @@ const CONTRADICTED: f64 = 3.84;
 const ROUNDING: f64 = 1e-14;
 
 /// A run with a narrower prior of its targets' positions, and its fit.
-pub(crate) struct Narrowed<'a> {
-    pub(crate) run: Run<'a>,
-    pub(crate) start: Start,
+pub(crate) struct NarrowedRun<'a> {
+    pub(crate) run: CalibrationRun<'a>,
+    pub(crate) start: RegisteredStart,
     pub(crate) fit: RobustFit,
 }
 
-impl<'a> Run<'a> {
+impl<'a> CalibrationRun<'a> {
     /// The run with the narrowest prior of targets' positions that the rows do not contradict; `None` if they determine the positions, or contradict
     /// all but the widest.
-    pub(crate) fn with_narrower_targets(&self, widest: &RobustFit) -> Option<Narrowed<'a>> {
+    pub(crate) fn with_narrower_targets(&self, widest: &RobustFit) -> Option<NarrowedRun<'a>> {
         let open_m = self.open_m(self.prior.as_ref()?, &widest.fitted).filter(|open| *open > MATTERS_M)?;
-        let rows = widest.robustness.registrable(&self.fit_rows);
+        let rows = widest.robustness.registration_rows(&self.fit_rows);
         let noise = widest.fitted.noise;
         let least = self.cost(&rows, noise, &widest.fitted)?;
         SIGMAS_M.into_iter().find_map(|sigma_m| {
@@ -42,12 +42,12 @@ impl<'a> Run<'a> {
             let start = run.register();
             let fit = run.fit_with(&[], &start, run.options.robust).ok()?;
             let lost = 2.0 * (run.cost(&rows, noise, &fit.fitted)? - least);
-            (lost <= CONTRADICTED).then_some(Narrowed { run, start, fit })
+            (lost <= CONTRADICTED).then_some(NarrowedRun { run, start, fit })
         })
     }
 
     /// The cost (27) of a fit by these rows, in units of the variance of their whitened residuals if it is above 1.
-    fn cost(&self, rows: &[u32], noise: Noise, fitted: &Fitted) -> Option<f64> {
+    fn cost(&self, rows: &[u32], noise: Noise, fitted: &FinishedFit) -> Option<f64> {
         let free = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let of_rows = Problem::new(self.session(&[]), rows.to_vec(), free, noise).normal(&fitted.estimate);
         let cost =
@@ -56,11 +56,11 @@ impl<'a> Run<'a> {
     }
 
     /// Standard deviation of the positions of targets by the rows and the axes' prior, metres, at most that of the targets' prior.
-    fn open_m(&self, prior: &Prior, fitted: &Fitted) -> Option<f64> {
+    fn open_m(&self, prior: &Prior, fitted: &FinishedFit) -> Option<f64> {
         let sigma_m = prior.target_sigma_m()?;
         let n = fitted.layout.dim();
         let of = |prior: &Prior| {
-            let mut normal = Normal::new(n);
+            let mut normal = NormalEquations::new(n);
             prior.add(&fitted.estimate, &fitted.layout, 1.0, &mut normal);
             normal.gram
         };

@@ -1,9 +1,9 @@
 //! A fit in steps: from registration to the optimum, with noise and prior weight re-estimated.
 
 use super::fit::{SUSPICIOUS, fit_screws, free_parameters, is_suspicious};
-use super::noise::stated;
-use super::pull::{EXACT, FINE, RELEASED, SOONER, left_by_pull};
-use crate::steps::found::{Fitted, OngoingFit, Start};
+use super::noise::merge_stated_noise;
+use super::prior_bias::{EXACT, FINE, RELEASED, SOONER, left_by_pull};
+use crate::steps::fit_progress::{FinishedFit, OngoingFit, RegisteredStart};
 use crate::{CalibrationOptions, Formulation, Minimum, NoiseSource, estimate_noise};
 use poecal_fit::analysis::effective_unknowns;
 use poecal_fit::parameters::Parameter;
@@ -12,20 +12,20 @@ use poecal_fit::state::{Estimate, Session};
 use poecal_model::measurement::{Noise, Quantity};
 use poecal_numerics::distributions::is_within_band;
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_numerics::solve::{LeastSquares as _, Normal, Options, Summary};
+use poecal_numerics::solve::{LeastSquares as _, NormalEquations, Options, Summary};
 use poecal_numerics::unit::Unit;
 
 /// Most rounds of re-estimating noise and the weight of the prior. Two or three suffice, except for data without noise.
 const RENEWALS: usize = 12;
 
 /// Predicted reduction of a full step.
-fn predicted_reduction(normal: &Normal) -> f64 {
+fn predicted_reduction(normal: &NormalEquations) -> f64 {
     normal.full_step().map_or(0.0, |step| normal.predicted_reduction(&step))
 }
 
 /// A fit: session, rows, weights, prior, options.
 #[derive(Clone, Copy)]
-pub(crate) struct Task<'a> {
+pub(crate) struct FitTask<'a> {
     pub(crate) session: Session<'a>,
     pub(crate) rows: &'a [u32],
     /// Weights of all rows of the data; `None` if all are 1.
@@ -35,27 +35,27 @@ pub(crate) struct Task<'a> {
     pub(crate) options: &'a CalibrationOptions,
 }
 
-impl Task<'_> {
+impl FitTask<'_> {
     /// The task with another weight of the prior.
     pub(crate) fn with_prior_weight(&self, weight: f64) -> Self {
-        Task { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
+        FitTask { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
     }
 
     /// A weight of the prior, at least 1 if no measured quantity has a length: noise would shrink the robot.
-    pub(crate) fn counted(&self, weight: f64) -> f64 {
+    pub(crate) fn prior_weight(&self, weight: f64) -> f64 {
         if self.session.lacks_length(self.rows) { weight.max(1.0) } else { weight }
     }
 
     /// The prior's weight in the first fit. An estimated noise then consists mostly of errors of the screws, so the prior is weighted as beside the
     /// usual error of gears and links.
-    fn with_first_prior_weight(&self, start: &Start) -> Self {
+    fn with_first_prior_weight(&self, start: &RegisteredStart) -> Self {
         let usual = 0.1 * SUSPICIOUS * 3.0 * self.session.length_m / start.noise.of_lengths();
         let is_open = start.source == NoiseSource::Estimated;
-        self.with_prior_weight(self.counted(if is_open { (usual * usual).min(1.0) } else { 1.0 }))
+        self.with_prior_weight(self.prior_weight(if is_open { (usual * usual).min(1.0) } else { 1.0 }))
     }
 
     /// The first fit from a registration.
-    pub(crate) fn first_fit(&self, start: &Start) -> OngoingFit {
+    pub(crate) fn first_fit(&self, start: &RegisteredStart) -> OngoingFit {
         let mut registered = start.registered.clone();
         registered.recentre(&self.session, self.rows);
         OngoingFit::new(self.with_first_prior_weight(start).fit(registered, start.noise))
@@ -63,15 +63,16 @@ impl Task<'_> {
 
     /// Effective number of unknowns determined by the measurements rather than the prior: theory.md §6 (34).
     pub(crate) fn effective_unknowns(&self, found: &OngoingFit) -> f64 {
-        let by_prior = self.believed(found).map(|believed| effective_unknowns(&found.normal, &believed));
+        let by_prior =
+            self.prior_information(found).map(|believed| effective_unknowns(&found.normal, &believed));
         found.normal.dim() as f64 - by_prior.unwrap_or(0.0)
     }
 
     /// The prior's part of a fit's normal information.
-    fn believed(&self, found: &OngoingFit) -> Option<Normal> {
+    fn prior_information(&self, found: &OngoingFit) -> Option<NormalEquations> {
         let (prior, weight) = self.prior?;
         let problem = self.problem(&found.estimate, Noise::new(1.0, 1.0));
-        let mut believed = Normal::new(found.normal.dim());
+        let mut believed = NormalEquations::new(found.normal.dim());
         prior.add(&found.estimate, problem.layout(), weight, &mut believed);
         Some(believed)
     }
@@ -79,8 +80,9 @@ impl Task<'_> {
     /// True if the residuals are evidently bias of the prior and no instrument noise; never if the prior alone determines the size of the robot.
     fn is_pull(&self, found: &OngoingFit, noise: Noise) -> bool {
         let Session { length_m, .. } = self.session;
-        let believed = if self.session.lacks_length(self.rows) { None } else { self.believed(found) };
-        let of_rows = Task { prior: None, ..*self };
+        let believed =
+            if self.session.lacks_length(self.rows) { None } else { self.prior_information(found) };
+        let of_rows = FitTask { prior: None, ..*self };
         let seen = || of_rows.problem(&found.estimate, noise).normal(&found.estimate);
         let left = believed.and_then(|believed| left_by_pull(&found.normal, &believed, seen));
         let is_measured = |it: &Quantity| it.unit() == Unit::Metre && self.session.data.has(*it);
@@ -103,8 +105,12 @@ impl Task<'_> {
 
     /// Completes a first fit: further starts if needed, then rounds with noise and prior weight re-estimated (noise only if its source is the
     /// residuals).
-    pub(crate) fn complete(&self, mut found: OngoingFit, start: &Start) -> Result<Fitted> {
-        let Start { mut noise, mut source, .. } = *start;
+    pub(crate) fn complete_first_fit(
+        &self,
+        mut found: OngoingFit,
+        start: &RegisteredStart,
+    ) -> Result<FinishedFit> {
+        let RegisteredStart { mut noise, mut source, .. } = *start;
         let mut task = self.with_first_prior_weight(start);
         if let Some((better, tried)) = task.restart(&start.registered, &found.estimate, noise) {
             found.report.restarts = tried;
@@ -119,7 +125,7 @@ impl Task<'_> {
                 let by_rotations = task.determined_by_rotations(&found, noise);
                 let (session, rows) = (&self.session, self.rows);
                 match estimate_noise(session, rows, &found.estimate, unknowns, by_rotations, noise) {
-                    Some(estimated) => noise = stated(self.options, estimated),
+                    Some(estimated) => noise = merge_stated_noise(self.options, estimated),
                     None => source = NoiseSource::Exact,
                 }
             }
@@ -158,7 +164,7 @@ impl Task<'_> {
         }
         // The axes' deviations estimate the quality of the nominal model.
         weight /= self.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
-        if source == NoiseSource::Exact { weight } else { self.counted(weight) }
+        if source == NoiseSource::Exact { weight } else { self.prior_weight(weight) }
     }
 
     /// Change of the ratios of noises: ratio of the largest to the smallest change among them, as a logarithm.
@@ -179,13 +185,13 @@ impl Task<'_> {
             return None;
         }
         let rotations = noise.without_lengths(UNMEASURED_M);
-        let seen = Task { prior: None, ..*self };
+        let seen = FitTask { prior: None, ..*self };
         let part = seen.problem(&found.estimate, rotations).normal(&found.estimate);
         Some(effective_unknowns(&found.normal, &part))
     }
 
     /// The result of a fit at its optimum, with its information in the minimal basis where possible.
-    pub(crate) fn finish(&self, found: OngoingFit, noise: Noise, source: NoiseSource) -> Result<Fitted> {
+    pub(crate) fn finish(&self, found: OngoingFit, noise: Noise, source: NoiseSource) -> Result<FinishedFit> {
         let mut found = found;
         let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         // The last change of the noise moved the optimum.
@@ -203,7 +209,7 @@ impl Task<'_> {
             ));
         }
         if self.prior.is_some() {
-            normal = Task { prior: None, ..*self }.problem(&estimate, noise).normal(&estimate);
+            normal = FitTask { prior: None, ..*self }.problem(&estimate, noise).normal(&estimate);
         } else if self.problem(&estimate, noise).layout().is_minimal() {
             (estimate, normal) = self.settle_null_directions(estimate, normal, noise, &mut report);
         }
@@ -213,11 +219,11 @@ impl Task<'_> {
         let is_of_formulation = self.options.formulation != Formulation::default();
         report.joint_offsets =
             (is_of_formulation && layout.parameters().any(offsets)).then(|| estimate.offsets());
-        Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
+        Ok(FinishedFit { estimate, normal, layout, noise, noise_source: source, report })
     }
 
     /// One fit. With weights it begins near the optimum, and on all rows.
-    pub(crate) fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
+    pub(crate) fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, NormalEquations, Summary) {
         if self.weights.is_some() {
             return self.minimize(&self.problem(&start, noise), start, &self.options.solver);
         }
@@ -225,10 +231,10 @@ impl Task<'_> {
     }
 
     /// One fit with a released prior.
-    fn released_fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
+    fn released_fit(&self, start: Estimate, noise: Noise) -> (Estimate, NormalEquations, Summary) {
         let mut options = self.options.clone();
         options.solver.decrement *= SOONER;
-        Task { options: &options, ..*self }.fit(start, noise)
+        FitTask { options: &options, ..*self }.fit(start, noise)
     }
 
     /// Minimises with the formulation of the options.
@@ -237,14 +243,14 @@ impl Task<'_> {
     }
 
     /// The free parameters.
-    pub(crate) fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
+    pub(crate) fn free_parameters(&self, estimate: &Estimate) -> Vec<Parameter> {
         let joints = (self.options.formulation.joint_parameters)(estimate.kinds());
         free_parameters(&self.session, estimate, self.rows, joints)
     }
 
     /// The problem of these rows and weights.
     pub(crate) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
-        let free = self.free(estimate);
+        let free = self.free_parameters(estimate);
         let problem = Problem::new(self.session, self.rows.to_vec(), free, noise).with_prior(self.prior);
         match self.weights {
             Some(weights) => problem.with_weights(weights),

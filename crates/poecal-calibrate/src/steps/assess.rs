@@ -2,24 +2,24 @@
 
 use std::sync::Arc;
 
-use super::accepted::accepted;
-use super::calibrated::CalibratedFit;
-use super::corrected::Found;
+use super::calibrated_fit::CalibratedFit;
+use super::corrected_fit::FittedSession;
 use super::figures::Figures;
 use super::improvement::improvements;
-use super::verdict::{Grounds, Judged, judged};
-use crate::doubts::one_zero::one_zero;
-use crate::doubts::signs::Signs;
+use super::limit_checks::judge_acceptance;
+use super::verdict::{LevelObjections, VerdictInput, judge_level};
+use crate::doubts::diagnostics::ResidualDiagnostics;
+use crate::doubts::single_offset::one_zero;
 use crate::events::Events;
 use crate::pictures::image_map::image_maps;
 use crate::pictures::optics_doubts::{OpticsDoubt, optics_doubt};
 use crate::pictures::view_doubts::view_doubts;
 use crate::robust::RobustFit;
-use crate::run::Run;
-use crate::run::placed::{Tip, place_tip, stations};
-use crate::run::rounding::rounded;
+use crate::run::CalibrationRun;
+use crate::run::calibrated_places::{UnmeasuredTip, place_tip, stations};
+use crate::run::rounding::describe_rounding;
 use crate::{
-    Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, Repaired, Trust, Verdict,
+    Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, RepairedSession, Trust, Verdict,
 };
 use poecal_arm::TermGroup;
 use poecal_fit::forensics::Diagnosis;
@@ -27,32 +27,37 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 use poecal_numerics::threads;
 
-impl<'a> Found<'a> {
+impl<'a> FittedSession<'a> {
     /// Judges the fit; with `events` if the session was searched for them.
-    pub(crate) fn judge(self, events: Option<Events>) -> Result<Repaired<'a>> {
+    pub(crate) fn judge(self, events: Option<Events>) -> Result<RepairedSession<'a>> {
         let rows = self.fit.run.data.len();
-        let (mut calibration, run) = threads::in_pool(rows, || self.judged(events));
+        let (mut calibration, run) = threads::in_pool(rows, || self.make_calibration(events));
         let improvement = improvements(&calibration, &run.data);
         if let Some(set) = &mut calibration.accuracy.held_out {
             set.improvement = improvement;
         }
         if let Some(accept) = &run.options.accept {
-            calibration.acceptance = Some(accepted(&calibration, &run.data, accept)?);
+            calibration.acceptance = Some(judge_acceptance(&calibration, &run.data, accept)?);
         }
-        Ok(Repaired { calibration, data: run.data })
+        Ok(RepairedSession { calibration, data: run.data })
     }
 
-    fn judged(self, events: Option<Events>) -> (Calibration, Run<'a>) {
-        let Found { fit, corrected, summary, cross_validation } = self;
+    fn make_calibration(self, events: Option<Events>) -> (Calibration, CalibrationRun<'a>) {
+        let FittedSession { fit, corrected, summary, cross_validation } = self;
         // If a corrected model searches for steps and drifts, the residuals of geometry do not.
         let finds_moves = events.is_none() || fit.run.corrections == Corrections::Off;
         let events = events.unwrap_or_default();
         let mut figures = fit.figures(&summary, corrected, cross_validation);
         let signs = fit.signs(&summary, &figures, finds_moves);
-        let (robot, targets) = fit.placed(&figures);
+        let (robot, targets) = fit.place_targets(&figures);
         let mistakes = signs.mistakes(&targets, fit.reach_m());
-        let judged =
-            judged(&Grounds { fit: &fit, summary: &summary, figures: &figures, signs: &signs, mistakes });
+        let judged = judge_level(&VerdictInput {
+            fit: &fit,
+            summary: &summary,
+            figures: &figures,
+            signs: &signs,
+            mistakes,
+        });
         let is_doubtful = judged.of_calibrated(&figures.trust.expected).level == Level::DoNotUse;
         if is_doubtful || signs.diagnosis.iter().any(Diagnosis::is_of_input) {
             // Mistakes in the input are no fault of a joint.
@@ -65,8 +70,8 @@ impl<'a> Found<'a> {
         let images = image_maps(&fit, &figures);
         let stations = stations(&fit.session(), &fit.estimate, fit.noise());
         let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
-        let judged = events.against.into_iter().fold(judged, Judged::against);
-        let judged = against_good.into_iter().fold(judged, Judged::against_good);
+        let judged = events.against.into_iter().fold(judged, LevelObjections::with_objection);
+        let judged = against_good.into_iter().fold(judged, LevelObjections::against_good);
         let verdict = verdict(&judged, correction.as_ref(), &accuracy, &trust);
         let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
         let calibration = Calibration {
@@ -106,22 +111,22 @@ impl<'a> Found<'a> {
 
 impl CalibratedFit<'_> {
     /// The calibrated robot with its tip, and the targets in its frame.
-    fn placed(&self, figures: &Figures) -> (Robot, Vec<CalibratedTarget>) {
-        let Run { robot, data, options, fit_rows, .. } = &self.run;
+    fn place_targets(&self, figures: &Figures) -> (Robot, Vec<CalibratedTarget>) {
+        let CalibrationRun { robot, data, options, fit_rows, .. } = &self.run;
         let frames = data.frames(fit_rows);
-        place_tip(robot, data, &frames, &figures.models.calibrated, options.move_tip, Tip::Nominal)
+        place_tip(robot, data, &frames, &figures.models.calibrated, options.move_tip, UnmeasuredTip::Nominal)
     }
 
     /// Warnings, a sentence each.
     fn warnings(
         &self,
         figures: &Figures,
-        signs: &Signs,
+        signs: &ResidualDiagnostics,
         (events, optics): (&Events, Option<OpticsDoubt>),
     ) -> Vec<String> {
         let Figures { accuracy, robustness, correction, .. } = figures;
         let mut warnings = signs.warnings();
-        warnings.extend(rounded(&self.session(), accuracy.training.calibrated.leading_m()));
+        warnings.extend(describe_rounding(&self.session(), accuracy.training.calibrated.leading_m()));
         if !signs.moved.as_ref().is_some_and(|it| it.explains(robustness)) {
             warnings.extend(robustness.warning(&self.run.fit_rows, &self.run.held_out_rows));
         }
@@ -141,11 +146,16 @@ impl CalibratedFit<'_> {
 }
 
 /// The verdict on the delivered model.
-fn verdict(judged: &Judged, correction: Option<&Correction>, accuracy: &Accuracy, trust: &Trust) -> Verdict {
+fn verdict(
+    judged: &LevelObjections,
+    correction: Option<&Correction>,
+    accuracy: &Accuracy,
+    trust: &Trust,
+) -> Verdict {
     match correction.filter(|it| it.has_terms()) {
         Some(found) => {
             let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);
-            judged.of_corrected(&found.judging(rows), [&found.expected, &trust.expected])
+            judged.of_corrected(&found.judging_error(rows), [&found.expected, &trust.expected])
         }
         None => judged.of_calibrated(&trust.expected),
     }

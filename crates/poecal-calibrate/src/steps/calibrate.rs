@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 
 use crate::events::repair;
-use crate::run::Run;
-use crate::run::refused::refuse_options;
-use crate::{Calibration, CalibrationOptions, Corrections, Repaired, Stage};
+use crate::run::CalibrationRun;
+use crate::run::option_conflicts::refuse_options;
+use crate::{Calibration, CalibrationOptions, CalibrationStage, Corrections, RepairedSession};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -17,11 +17,11 @@ use poecal_numerics::error::Result;
 /// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) for options out of range,
 /// [`ErrorKind::Solver`](poecal_numerics::error::ErrorKind::Solver) if no finite result could be reached.
 pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Result<Calibration> {
-    Ok(calibrated(robot, data, options, false, &mut |_| {})?.calibration)
+    Ok(run_calibration(robot, data, options, false, &mut |_| {})?.calibration)
 }
 
 /// [`calibrate`] with the session repaired if an event is evident and the repaired session predicts left-out rows better
-/// ([`CalibrationOptions::repair`]); reports each stage as it begins. The results of the calibration refer to [`Repaired::data`].
+/// ([`CalibrationOptions::repair`]); reports each stage as it begins. The results of the calibration refer to [`RepairedSession::data`].
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -29,43 +29,43 @@ pub fn calibrate_repairing<'a>(
     robot: &Robot,
     data: &'a Dataset,
     options: &CalibrationOptions,
-    progress: &mut dyn FnMut(Stage),
-) -> Result<Repaired<'a>> {
-    calibrated(robot, data, options, true, progress)
+    progress: &mut dyn FnMut(CalibrationStage),
+) -> Result<RepairedSession<'a>> {
+    run_calibration(robot, data, options, true, progress)
 }
 
 /// All steps; `searches` requests the search for events.
-fn calibrated<'a>(
+fn run_calibration<'a>(
     robot: &Robot,
     data: &'a Dataset,
     options: &CalibrationOptions,
     searches: bool,
-    progress: &mut dyn FnMut(Stage),
-) -> Result<Repaired<'a>> {
+    progress: &mut dyn FnMut(CalibrationStage),
+) -> Result<RepairedSession<'a>> {
     refuse_options(data, options)?;
     // Rows, unknowns and prior; refuses problems that cannot be fitted.
-    let run = Run::new(robot, Cow::Borrowed(data), options, Vec::new())?;
+    let run = CalibrationRun::new(robot, Cow::Borrowed(data), options, Vec::new())?;
     // A loop over fits, if it is requested.
     let run = run.with_best_tolerance()?;
-    progress(Stage::Registration);
+    progress(CalibrationStage::Registration);
     let start = run.register();
     // A session of few rows, without one that alone ruins its start.
     let (run, start) = run.without_ruinous(start);
-    progress(Stage::Fit);
+    progress(CalibrationStage::Fit);
     // A loop if several instruments have different noises: fit, noises, fit.
     let fit = run.fit(start)?;
     if fit.run.corrections != Corrections::Off {
-        progress(Stage::Corrections);
+        progress(CalibrationStage::Corrections);
     }
     // A loop if the corrected model suspects other rows than geometry: terms, rows, fit, terms.
     let mut found = fit.correct()?;
     // A loop over sessions with events: search, the session without the event, its fit.
     let events = searches.then(|| repair(&mut found));
-    progress(Stage::Analysis);
+    progress(CalibrationStage::Analysis);
     // The complete judgement of the fit, once.
-    let Repaired { calibration, data: repaired } = found.judge(events)?;
+    let RepairedSession { calibration, data: repaired } = found.judge(events)?;
     // Data that a formulation rewrites are returned unchanged.
     let is_as_given = calibration.repairs.is_empty() && data.pictures.is_empty();
     let data = if is_as_given { Cow::Borrowed(data) } else { repaired };
-    Ok(Repaired { calibration, data })
+    Ok(RepairedSession { calibration, data })
 }

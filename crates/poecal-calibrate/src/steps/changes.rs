@@ -3,22 +3,22 @@
 use nalgebra::Vector3;
 
 use poecal_fit::analysis::PLAUSIBLE;
-use poecal_fit::gauge::{Deviation, screw_motions};
+use poecal_fit::gauge::{ScrewDeviation, screw_motions};
 use poecal_fit::problem::Layout;
 use poecal_fit::state::Session;
-use poecal_fit::uncertainty::{Uncertainty, View};
-use poecal_model::offsets::{ChangeBySteps, Changes, End, JointChange};
+use poecal_fit::uncertainty::{FitView, Uncertainty};
+use poecal_model::offsets::{ChangeBySteps, Changes, EndConstraint, JointChange};
 use poecal_model::robot::{Joint, JointKind, Robot};
 
 /// Standard deviations, as shares of those of a nominal model, up to which a quantity is determined.
 const DETERMINED: f64 = 0.5;
 
 /// Derivatives of a vector by each scaled unknown: three rows.
-type Rows = [Vec<f64>; 3];
+type VectorDerivatives = [Vec<f64>; 3];
 
 /// Standard deviations of tilt and shift; `None` if they exceed half of the uncertainty of a nominal model.
 pub(crate) fn sigmas(
-    (tilt, shift): (&Rows, &Rows),
+    (tilt, shift): (&VectorDerivatives, &VectorDerivatives),
     uncertainty: Option<&Uncertainty>,
     length_m: f64,
 ) -> (Option<f64>, Option<f64>) {
@@ -37,19 +37,19 @@ fn sigma(rows: &[Vec<f64>], uncertainty: Option<&Uncertainty>, most: f64) -> Opt
 
 /// The correction of each joint, with its derivatives by the unknowns. In a robot with branches offsets are not separated from the axes.
 pub(crate) fn joint_changes(
-    view: &View<'_>,
+    view: &FitView<'_>,
     layout: &Layout,
     uncertainty: Option<&Uncertainty>,
-    deviations: &[Deviation],
+    deviations: &[ScrewDeviation],
 ) -> Vec<(JointChange, ChangeBySteps)> {
     let session = &view.session;
     let Session { robot: nominal, length_m, .. } = *session;
     let calibrated = view.estimate;
     let actual = Robot { terms: calibrated.terms.clone(), ..nominal.with_screws(&calibrated.screws()) };
-    let base = if session.base_free() { End::Free } else { End::Kept };
+    let base = if session.base_free() { EndConstraint::Free } else { EndConstraint::Kept };
     let Ok(changes) = Changes::from_robots(nominal, &actual, base) else {
         let joints = nominal.joints.iter().zip(&actual.joints).zip(deviations);
-        let of = |(pair, deviation): (_, &Deviation)| {
+        let of = |(pair, deviation): (_, &ScrewDeviation)| {
             let by_steps = ChangeBySteps {
                 offset: vec![0.0; layout.dim()],
                 tilt: deviation.tilt_by_step.clone(),
@@ -78,7 +78,7 @@ pub(crate) fn joint_changes(
 /// The correction of an axis alone.
 fn of_axis(
     (nominal, actual): (&Joint, &Joint),
-    deviation: &Deviation,
+    deviation: &ScrewDeviation,
     uncertainty: Option<&Uncertainty>,
     length_m: f64,
 ) -> JointChange {

@@ -1,18 +1,18 @@
 //! Figures of a fit: errors of all models, trust, determined unknowns.
 
-use super::calibrated::CalibratedFit;
+use super::calibrated_fit::CalibratedFit;
 use super::summary::FitSummary;
 use super::trust::trust;
 use crate::corrections::CorrectedFit;
 use crate::robust::RobustFit;
-use crate::run::Run;
+use crate::run::CalibrationRun;
 use crate::run::accuracy::model_accuracy;
-use crate::run::located::located;
 use crate::run::split::too_few_to_hold_out;
+use crate::run::station_frames::locate_stations;
 use crate::trust::coverage_check::held_out_check;
 use crate::trust::domain::Domain;
 use crate::{Accuracy, Correction, JointEffect, Models, Robustness, SetAccuracy, Trust, set_accuracy};
-use poecal_fit::analysis::{Identifiability, Setup, identifiability};
+use poecal_fit::analysis::{AnalysisSetup, Identifiability, identifiability};
 use poecal_fit::start::{register, register_again};
 use poecal_fit::state::{Estimate, Session};
 use poecal_fit::uncertainty::CrossValidation;
@@ -81,7 +81,7 @@ impl CalibratedFit<'_> {
             (&models.registered, run.options.seed),
         );
         let correction =
-            corrected.map(|it| it.judged(self, trust.cross_validation.as_ref(), &models.registered));
+            corrected.map(|it| it.judge(self, trust.cross_validation.as_ref(), &models.registered));
         if let Some(found) = correction.as_ref().filter(|it| !it.has_terms()) {
             self.allow_for_terms(&session, &mut trust, (found, &models.registered));
         }
@@ -89,7 +89,7 @@ impl CalibratedFit<'_> {
             let errors = correction.as_ref().map(|it| it.errors(&run.data, rows));
             SetAccuracy { corrected: errors.map(|it| model_accuracy(&run.data, rows, &it)), ..of(rows) }
         };
-        let robustness = robustness.clone().beside([&run.fit_rows, &run.held_out_rows], with_terms);
+        let robustness = robustness.clone().with_accuracy([&run.fit_rows, &run.held_out_rows], with_terms);
         let predicted = trust.uncertainty.as_ref().map(|it| (it, &trust.coverage[..]));
         let of_calibrated = (&session, &models.calibrated);
         trust.held_out = held_out_check(of_calibrated, (&run.fit_rows, &run.held_out_rows), predicted);
@@ -100,7 +100,7 @@ impl CalibratedFit<'_> {
             accuracy.training.corrected = Some(found.training);
             accuracy.held_out.iter_mut().for_each(|set| set.corrected = found.held_out);
         }
-        let setup = Setup {
+        let setup = AnalysisSetup {
             session,
             rows: &run.fit_rows,
             estimate: &fitted.estimate,
@@ -130,8 +130,8 @@ impl CalibratedFit<'_> {
         } else {
             register_again(&registration(true), start)
         };
-        let [nominal, registered] =
-            [again(false), registered].map(|it| located(session, &run.fit_rows, &it, noise).into_owned());
+        let [nominal, registered] = [again(false), registered]
+            .map(|it| locate_stations(session, &run.fit_rows, &it, noise).into_owned());
         Models { nominal, registered, calibrated: self.estimate.clone() }
     }
 
@@ -143,7 +143,7 @@ impl CalibratedFit<'_> {
         (found, registered): (&Correction, &Estimate),
     ) {
         let Some(uncertainty) = trust.uncertainty.as_mut() else { return };
-        let Run { robot, fit_rows: rows, options, .. } = &self.run;
+        let CalibrationRun { robot, fit_rows: rows, options, .. } = &self.run;
         let domain = Domain {
             session,
             rows,

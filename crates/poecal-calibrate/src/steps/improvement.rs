@@ -2,7 +2,7 @@
 
 use crate::{Calibration, Improvement, Improvements};
 use poecal_fit::state::RowError;
-use poecal_model::measurement::{Dataset, Measured};
+use poecal_model::measurement::{Dataset, MeasuredQuantities};
 use poecal_numerics::distributions::f_quantile;
 
 /// Probability that the factor lies outside its bounds.
@@ -11,26 +11,26 @@ const RISK: f64 = 0.05;
 /// Improvements on the held-out rows; `None` without any.
 pub(crate) fn improvements(calibration: &Calibration, data: &Dataset) -> Option<Improvements> {
     let rows = &calibration.held_out_rows;
-    let packed = calibration.packed(data);
+    let packed = calibration.packed_values(data);
     let session = calibration.session(data, &packed);
     if rows.is_empty() {
         return None;
     }
     let before = session.errors(rows, &calibration.models.registered);
-    let of = |after: &[RowError]| paired(data, rows, [&before, after]);
+    let of = |after: &[RowError]| paired_improvement(data, rows, [&before, after]);
     let after = session.errors(rows, &calibration.models.calibrated);
     let corrected = calibration.correction.as_ref().map(|found| of(&found.errors(data, rows)));
     Some(Improvements { calibrated: of(&after), corrected })
 }
 
 /// Improvement by (50) of each quantity, from errors of the same rows by two models, before and after; `rows` ascend.
-pub(crate) fn paired(
+pub(crate) fn paired_improvement(
     data: &Dataset,
     rows: &[u32],
     [before, after]: [&[RowError]; 2],
-) -> Measured<Improvement> {
+) -> MeasuredQuantities<Improvement> {
     let groups = data.configurations(rows);
-    Measured::from_fn(|quantity| {
+    MeasuredQuantities::from_fn(|quantity| {
         let sums = groups.iter().map(|group| {
             let own = group.iter().filter_map(|row| rows.binary_search(row).ok());
             own.fold([0.0, 0.0], |[a, b], at| {

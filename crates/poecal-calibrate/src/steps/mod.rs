@@ -4,21 +4,21 @@
 //! noises of their own), `corrected.rs` (a loop if the corrected model suspects other rows than geometry), `tolerance.rs` (a loop over fits and their
 //! cross-validations), and `assess.rs` (the judgement of the fit, once; figures by `figures.rs`, the level with its reasons by `verdict.rs`).
 
-pub(crate) mod accepted;
 pub(crate) mod assess;
 pub(crate) mod calibrate;
-pub(crate) mod calibrated;
+pub(crate) mod calibrated_fit;
 pub(crate) mod changes;
-pub(crate) mod corrected;
+pub(crate) mod corrected_fit;
 pub(crate) mod figures;
-pub(crate) mod found;
+pub(crate) mod fit_progress;
 pub(crate) mod improvement;
-pub(crate) mod judging;
+pub(crate) mod joint_correlations;
+pub(crate) mod judging_rows;
 pub(crate) mod level;
+pub(crate) mod limit_checks;
 pub(crate) mod repeatability;
 pub(crate) mod result;
 pub(crate) mod summary;
-pub(crate) mod together;
 pub(crate) mod tolerance;
 pub(crate) mod trust;
 pub(crate) mod verdict;

@@ -50,13 +50,14 @@ pub(crate) fn repeat_scatter(
     estimate: &Estimate,
 ) -> Option<RepeatScatter> {
     let groups = groups(data);
-    let quantity = leading(data, *groups.first()?.first()?)?;
-    let is_own = |rows: &&Vec<u32>| rows.first().and_then(|row| leading(data, *row)) == Some(quantity);
+    let quantity = leading_quantity(data, *groups.first()?.first()?)?;
+    let is_own =
+        |rows: &&Vec<u32>| rows.first().and_then(|row| leading_quantity(data, *row)) == Some(quantity);
     let own: Vec<&Vec<u32>> = groups.iter().filter(is_own).collect();
     let all = own.iter().map(|rows| {
         let mut errors = session.errors(rows, estimate);
         turn_to_first(data, rows, estimate, &mut errors);
-        quantity.unit().shown(scatter(&errors))
+        quantity.unit().in_shown_unit(scatter(&errors))
     });
     let (smallest, largest) =
         all.fold((f64::INFINITY, 0.0), |it: (f64, f64), own| (it.0.min(own), it.1.max(own)));
@@ -77,11 +78,11 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     if groups.is_empty() {
         return Vec::new();
     }
-    let packed = calibration.packed(data);
+    let packed = calibration.packed_values(data);
     let session = calibration.session(data, &packed);
     let models = &calibration.models;
     let poses = groups.into_iter().filter_map(|rows| {
-        let quantity = leading(data, *rows.first()?)?;
+        let quantity = leading_quantity(data, *rows.first()?)?;
         let errors = |estimate: &Estimate| {
             let mut errors = session.errors(&rows, estimate);
             turn_to_first(data, &rows, estimate, &mut errors);
@@ -97,12 +98,12 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
 
 /// Rows of one subject ([`Dataset::subject`]), quantity and configuration (the readings of the group's first row), at least [`ROWS`].
 fn groups(data: &Dataset) -> Vec<Vec<u32>> {
-    let class = |row: u32| (data.subject(row), leading(data, row));
-    data.alike(&data.all_rows(), SAME, ROWS, class)
+    let class = |row: u32| (data.subject(row), leading_quantity(data, row));
+    data.group_similar(&data.all_rows(), SAME, ROWS, class)
 }
 
 /// The first quantity that a row measured.
-fn leading(data: &Dataset, row: u32) -> Option<Quantity> {
+fn leading_quantity(data: &Dataset, row: u32) -> Option<Quantity> {
     let channels = data.observations[row as usize].measurement.channels();
     channels.first().map(|channel| channel.quantity)
 }

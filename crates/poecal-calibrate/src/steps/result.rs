@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::pictures::image_map::ImageMap;
-use crate::run::placed::{CalibratedStation, CalibratedTarget};
+use crate::run::calibrated_places::{CalibratedStation, CalibratedTarget};
 use crate::{
     Acceptance, Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Event, Formulation, Models,
     NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
@@ -13,7 +13,7 @@ use poecal_arm::lie::Pose;
 use poecal_fit::analysis::Identifiability;
 use poecal_fit::forensics::Diagnosis;
 use poecal_fit::problem::Prior;
-use poecal_fit::state::{Packed, Session, Unknowns};
+use poecal_fit::state::{PackedValues, Session, Unknowns};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::{Robot, Tolerance};
 use poecal_numerics::{solve, threads};
@@ -27,9 +27,9 @@ use poecal_numerics::{solve, threads};
 /// #     pub use poecal_model::simulate::Simulation;
 /// # }
 /// use poecal::{CalibrationOptions, calibrate, Simulation};
-/// use poecal::simulate::{Kind, elbow};
+/// use poecal::simulate::{SessionKind, elbow};
 /// let simulation = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
-/// let made = simulation.run(&elbow(), Kind::POSE)?;
+/// let made = simulation.run(&elbow(), SessionKind::POSE)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
 /// assert!(held_out.calibrated.position_mm().max < 1e-6);
@@ -94,12 +94,12 @@ pub struct Calibration {
     /// Errors of corners over the image of each camera whose picture has a known size.
     pub images: Vec<ImageMap>,
     /// Joint values of its measurements with their sines and cosines.
-    pub(crate) packed: Arc<Packed>,
+    pub(crate) packed: Arc<PackedValues>,
 }
 
 /// A calibration, and its session.
 #[derive(Clone, Debug)]
-pub struct Repaired<'a> {
+pub struct RepairedSession<'a> {
     /// The calibration, with repaired and suspected events.
     pub calibration: Calibration,
     /// The measurements as they were fitted: the supplied ones if rows were only left out.
@@ -108,15 +108,15 @@ pub struct Repaired<'a> {
 
 impl Calibration {
     /// Joint values of measurements; the stored ones for the data of the calibration.
-    pub fn packed(&self, data: &Dataset) -> Arc<Packed> {
+    pub fn packed_values(&self, data: &Dataset) -> Arc<PackedValues> {
         if self.packed.is_of(&self.nominal, data) {
             return Arc::clone(&self.packed);
         }
-        Arc::new(Packed::from_dataset(&self.nominal, data))
+        Arc::new(PackedValues::from_dataset(&self.nominal, data))
     }
 
     /// The session of these measurements and their joint values.
-    pub fn session<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
+    pub fn session<'a>(&'a self, data: &'a Dataset, packed: &'a PackedValues) -> Session<'a> {
         Session::new(&self.nominal, data, packed, self.frame == DeviceFrameKnowledge::Unknown)
             .with_unknowns(&self.unknowns)
     }
@@ -140,7 +140,7 @@ impl Calibration {
     }
 
     fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
-        let packed = Packed::from_dataset(&self.nominal, data);
+        let packed = PackedValues::from_dataset(&self.nominal, data);
         let session = self.session(data, &packed);
         let start = match self.frame {
             DeviceFrameKnowledge::Base => self.models.nominal.clone(),

@@ -1,18 +1,18 @@
 //! Inputs of the analysis after a fit.
 
-use super::calibrated::CalibratedFit;
+use super::calibrated_fit::CalibratedFit;
 use crate::robust::RobustFit;
-use crate::run::fit::minimal;
+use crate::run::fit::minimal_layout;
 use crate::run::noise::is_stated;
 use crate::{CalibrationOptions, Formulation};
 use poecal_fit::parameters::Parameter;
 use poecal_fit::problem::{Layout, Problem};
 use poecal_fit::state::{Estimate, Session};
 use poecal_fit::uncertainty::{
-    CrossValidation, PriorInformation, Remainder, View, cross_validate, remainder,
+    CrossValidation, FitView, PriorInformation, ResidualVariance, cross_validate, remainder,
 };
 use poecal_model::measurement::{ByQuantity, Noise};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Efficiency of the robust losses under normal noise.
 const EFFICIENCY: f64 = 0.95;
@@ -22,8 +22,8 @@ pub(crate) struct FitSummary {
     /// Rows that a robust fit keeps, or all fitted rows.
     pub(crate) kept: Vec<u32>,
     pub(crate) layout: Layout,
-    pub(crate) normal: Normal,
-    pub(crate) remainder: Remainder,
+    pub(crate) normal: NormalEquations,
+    pub(crate) remainder: ResidualVariance,
     free: Vec<Parameter>,
     prior: PriorInformation,
     noise: Noise,
@@ -37,7 +37,7 @@ impl FitSummary {
     pub(crate) fn new(
         (session, estimate): (&Session<'_>, &Estimate),
         kept: Vec<u32>,
-        (layout, normal): (Layout, Normal),
+        (layout, normal): (Layout, NormalEquations),
         prior: PriorInformation,
         noise: Noise,
         options: &CalibrationOptions,
@@ -47,7 +47,7 @@ impl FitSummary {
             free: layout.parameters().map(|(parameter, _)| *parameter).collect(),
             prior: prior.with_chosen(&chosen, session.length_m),
             noise_is_stated: is_stated(session.data, options),
-            remainder: Remainder::default(),
+            remainder: ResidualVariance::default(),
             variance: 1.0,
             kept,
             layout,
@@ -60,10 +60,10 @@ impl FitSummary {
         summary
     }
 
-    pub(crate) fn view<'a>(&'a self, session: Session<'a>, estimate: &'a Estimate) -> View<'a> {
+    pub(crate) fn view<'a>(&'a self, session: Session<'a>, estimate: &'a Estimate) -> FitView<'a> {
         let FitSummary { kept, free, prior, noise, noise_is_stated, variance, .. } = self;
         let (noise, noise_is_stated, variance) = (*noise, *noise_is_stated, *variance);
-        View { session, rows: kept, free, noise, noise_is_stated, prior, variance, estimate }
+        FitView { session, rows: kept, free, noise, noise_is_stated, prior, variance, estimate }
     }
 
     /// Cross-validation of the fit.
@@ -75,12 +75,12 @@ impl FitSummary {
     pub(crate) fn from_fit(fit: &CalibratedFit<'_>) -> Self {
         let CalibratedFit { run, robust: RobustFit { fitted, robustness }, estimate, .. } = fit;
         let (session, is_robust) = (fit.session(), robustness.loss.is_some());
-        let kept = if is_robust { robustness.registrable(&run.fit_rows) } else { run.fit_rows.clone() };
+        let kept = if is_robust { robustness.registration_rows(&run.fit_rows) } else { run.fit_rows.clone() };
         let is_usual = run.options.formulation == Formulation::default();
         let (layout, normal) = if (is_usual || fitted.layout.is_minimal()) && !is_robust {
             (fitted.layout.clone(), fitted.normal.clone())
         } else {
-            minimal(session, &kept, estimate, fitted.noise)
+            minimal_layout(session, &kept, estimate, fitted.noise)
         };
         let mut normal = normal;
         if let Some(optics) = &fit.optics {

@@ -1,7 +1,7 @@
 //! Tolerances of the prior, chosen by cross-validation.
 
 use super::summary::FitSummary;
-use crate::run::Run;
+use crate::run::CalibrationRun;
 use poecal_model::robot::Tolerance;
 use poecal_numerics::error::Result;
 
@@ -9,12 +9,12 @@ use poecal_numerics::error::Result;
 const USUAL: f64 = 0.01;
 
 /// Tried tolerances: the usual one, those of more and more precise robots, and those of robots that hardly match their nominal model.
-fn tried() -> [Tolerance; 5] {
+fn tolerances_to_try() -> [Tolerance; 5] {
     let of = |angle_deg: f64, length_m| Tolerance { angle_rad: angle_deg.to_radians(), length_m };
     [Tolerance::default(), of(0.2, 2e-3), of(0.05, 5e-4), of(1.0, 1e-2), of(3.0, 1e-2)]
 }
 
-impl Run<'_> {
+impl CalibrationRun<'_> {
     /// The run with the tolerance whose fit predicts left-out rows best (random folds, ends of the joints' ranges, files, ids), if that is requested.
     ///
     /// # Errors
@@ -24,7 +24,7 @@ impl Run<'_> {
             return Ok(self);
         }
         let mut best = (f64::INFINITY, Tolerance::default());
-        for tolerance in tried() {
+        for tolerance in tolerances_to_try() {
             let run = self.with_tolerance(tolerance);
             let start = run.register();
             let fit = run.fit(start)?;

@@ -1,18 +1,18 @@
 //! Trust in a calibration: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
 
 use super::changes::{joint_changes, sigmas};
+use super::joint_correlations::{CommonDirection, common_directions, held_sigmas};
 use super::summary::FitSummary;
-use super::together::{CommonDirection, common_directions, held_sigmas};
 use crate::CoverageCheck;
 use crate::doubts::suspicion::{JointCorrection, suspicions};
 use crate::trust::domain::Domain;
-use crate::trust::expected::Expectations;
+use crate::trust::expected_errors::Expectations;
 use poecal_fit::analysis::{JointCoverage, coverage};
 use poecal_fit::gauge::screw_deviations;
 use poecal_fit::start::{Registration, register_again};
 use poecal_fit::state::{Estimate, Session, rms_m, sample_rows};
 use poecal_fit::uncertainty::{
-    Bootstrap, CrossValidation, Shares, Uncertainty, View, bootstrap, discrepancy,
+    Bootstrap, CrossValidation, FitView, Shares, Uncertainty, bootstrap, discrepancy,
 };
 use poecal_model::measurement::Quantity;
 
@@ -23,10 +23,10 @@ const EFFECT_SAMPLE: usize = 300;
 ///
 /// ```
 /// # use poecal_calibrate::CalibrationOptions;
-/// # use poecal_model::measurement::Kind;
+/// # use poecal_model::measurement::SessionKind;
 /// # use poecal_model::simulate::{Simulation, elbow};
 /// # use poecal_calibrate::calibrate;
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let expected = calibration.trust.expected.range.ok_or("too few rows")?;
 /// println!("{:.3} mm (RMS) to be expected anywhere within the limits", expected.sigma_m * 1e3);
@@ -54,7 +54,7 @@ pub struct Trust {
 
 /// Judges a finished fit, together with its cross-validation.
 pub(crate) fn trust(
-    view: &View<'_>,
+    view: &FitView<'_>,
     summary: &FitSummary,
     cross_validation: Option<CrossValidation>,
     (registered, seed): (&Estimate, u64),
@@ -91,7 +91,7 @@ pub(crate) fn trust(
 
 /// Correction of each joint with its uncertainty and effect.
 fn joints(
-    view: &View<'_>,
+    view: &FitView<'_>,
     FitSummary { layout, normal, .. }: &FitSummary,
     uncertainty: Option<&Uncertainty>,
 ) -> (Vec<JointCorrection>, Vec<CommonDirection>) {
@@ -135,7 +135,7 @@ fn joints(
 }
 
 /// An estimate with tool and device frame refitted.
-fn registered_again(view: &View<'_>, rows: &[u32], start: &Estimate) -> Estimate {
+fn registered_again(view: &FitView<'_>, rows: &[u32], start: &Estimate) -> Estimate {
     let registration =
         Registration { session: view.session, rows, noise: view.noise, targets_free: true, prior: None };
     register_again(&registration, start)

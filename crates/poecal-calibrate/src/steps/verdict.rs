@@ -1,11 +1,11 @@
 //! The verdict on a calibration, by fixed rules (docs/theory.md §9, *Verdict*).
 
-use super::calibrated::CalibratedFit;
+use super::calibrated_fit::CalibratedFit;
 use super::figures::Figures;
-use super::judging::{Judging, WORTH};
+use super::judging_rows::{JudgingRows, WORTH};
 use super::level::{Gain, Level, Verdict};
 use super::summary::FitSummary;
-use crate::doubts::signs::Signs;
+use crate::doubts::diagnostics::ResidualDiagnostics;
 use crate::run::accuracy::JudgingError;
 use crate::{AcceptedModel, Expectations};
 use poecal_fit::analysis::Direction;
@@ -13,7 +13,7 @@ use poecal_fit::forensics::DiagnosisKind;
 
 /// Reasons against a level, before the expected errors of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Judged {
+pub(crate) struct LevelObjections {
     /// Reasons against any use of any model.
     against: Vec<String>,
     /// True if axes of joints were fitted.
@@ -41,9 +41,9 @@ fn is_too_large(error: &JudgingError, reach_m: f64) -> bool {
     error.metres() > TOO_LARGE * reach_m
 }
 
-impl Judged {
+impl LevelObjections {
     /// Adds a reason against any use.
-    pub(crate) fn against(mut self, reason: String) -> Self {
+    pub(crate) fn with_objection(mut self, reason: String) -> Self {
         self.against.insert(0, reason);
         self
     }
@@ -77,7 +77,7 @@ impl Judged {
         [no_better, too_large, unclear]: [Option<&String>; 3],
         [expected, of_calibrated]: [&Expectations; 2],
     ) -> Verdict {
-        let confirmed = self.confirmed(of_calibrated);
+        let confirmed = self.confirm_nominal(of_calibrated);
         let no_better = no_better.filter(|_| confirmed.is_none());
         let all = self.against.iter().chain(no_better).chain(too_large);
         let mut against: Vec<String> = all.cloned().collect();
@@ -139,7 +139,7 @@ impl Judged {
 
     /// Statement that the axes of the nominal model are confirmed: the distance of the fitted ones is within their uncertainty, theory.md §9,
     /// *Verdict*.
-    fn confirmed(&self, expected: &Expectations) -> Option<String> {
+    fn confirm_nominal(&self, expected: &Expectations) -> Option<String> {
         let (sampled, nominal) = expected.sampled.zip(expected.nominal)?;
         let [before_m, after_m] = [&self.nominal, &self.calibrated].map(JudgingError::metres);
         let is_of_a_robot = before_m > 0.0 && before_m <= USUAL * self.reach_m;
@@ -195,22 +195,22 @@ const BLOCKS: f64 = 2.0;
 const RANGE: f64 = 2.0;
 
 /// Input of a verdict.
-pub(crate) struct Grounds<'a> {
+pub(crate) struct VerdictInput<'a> {
     pub(crate) fit: &'a CalibratedFit<'a>,
     pub(crate) summary: &'a FitSummary,
     pub(crate) figures: &'a Figures,
-    pub(crate) signs: &'a Signs,
+    pub(crate) signs: &'a ResidualDiagnostics,
     /// Mistakes in the input, a sentence each.
     pub(crate) mistakes: Vec<String>,
 }
 
 /// The verdict, except for the expected errors of the model.
-pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
+pub(crate) fn judge_level(grounds: &VerdictInput<'_>) -> LevelObjections {
     let (run, reach_m) = (&grounds.fit.run, grounds.fit.reach_m());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
-    let judging = Judging::from_fit(grounds.fit, grounds.figures);
+    let judging = JudgingRows::from_fit(grounds.fit, grounds.figures);
     let [no_better, unclear] = if moves_joints { judging.no_better() } else { [None, None] };
-    let Judging { place, errors: [before, after], .. } = judging;
+    let JudgingRows { place, errors: [before, after], .. } = judging;
     let too_large = is_too_large(&after, reach_m).then(|| {
         let JudgingError { what, rms, unit } = &after;
         format!(
@@ -218,7 +218,7 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
             unit.symbol()
         )
     });
-    Judged {
+    LevelObjections {
         against: against_use(grounds),
         moves_joints,
         nominal: before,
@@ -226,14 +226,14 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
         no_better,
         unclear,
         too_large,
-        drifted: drifted(grounds),
+        drifted: describe_drifted_axes(grounds),
         everywhere: against_use_everywhere(grounds),
-        weakly: grounds.figures.identifiability.weakly(),
+        weakly: grounds.figures.identifiability.weakly_determined(),
         reach_m,
     }
 }
 
-fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
+fn against_use(grounds: &VerdictInput<'_>) -> Vec<String> {
     let mut reasons = grounds.mistakes.clone();
     if !grounds.fit.robust.fitted.report.termination.is_success() {
         reasons.push("the fit did not converge".to_owned());
@@ -255,7 +255,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
 }
 
 /// Axes farther from nominal than any axis of this robot. The zero of a joint moves all later axes.
-fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
+fn describe_drifted_axes(grounds: &VerdictInput<'_>) -> Vec<String> {
     if grounds.signs.diagnosis.iter().any(|it| it.kind == DiagnosisKind::JointZero) {
         return Vec::new();
     }
@@ -277,7 +277,7 @@ fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
 }
 
 /// Undetermined directions, except those of joints of one reading: no configuration separates them, and no prediction does.
-fn undetermined_directions(grounds: &Grounds<'_>) -> usize {
+fn undetermined_directions(grounds: &VerdictInput<'_>) -> usize {
     let reading = |name: &String| {
         grounds
             .fit
@@ -298,7 +298,7 @@ fn undetermined_directions(grounds: &Grounds<'_>) -> usize {
     (found.parameters - found.rank).saturating_sub(followers)
 }
 
-fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
+fn against_use_everywhere(grounds: &VerdictInput<'_>) -> Vec<String> {
     let Figures { trust, robustness, .. } = grounds.figures;
     let run = &grounds.fit.run;
     let absurd = grounds.signs.noise.iter().filter(|doubt| doubt.is_absurd);
@@ -333,8 +333,8 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
         let is = if open == 1 { "is" } else { "are" };
         reasons.push(format!("{open} of {unknowns} unknowns {is} not determined by these configurations"));
     }
-    if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
-        && let Some((quantity, rms)) = worst.rms.leading()
+    if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst_block()?)))
+        && let Some((quantity, rms)) = worst.rms.leading_value()
         && let Some(of_random) = found.inside.get(quantity).or(found.random.rms.get(quantity))
         && rms > BLOCKS * of_random
     {
@@ -342,7 +342,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
         reasons.push(format!(
             "cross-validation: the error of {} is {:.3} {}, {:.1} times that of random rows",
             worst.name,
-            unit.shown(rms),
+            unit.in_shown_unit(rms),
             unit.symbol(),
             rms / of_random
         ));

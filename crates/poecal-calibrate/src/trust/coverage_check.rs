@@ -5,12 +5,12 @@ use serde::Serialize;
 
 use crate::CornerError;
 use crate::run::accuracy::{ModelAccuracy, model_accuracy};
-use crate::run::located::rows_of_fitted_stations;
-use poecal_fit::analysis::{JointCoverage, inside};
+use crate::run::station_frames::rows_of_fitted_stations;
+use poecal_fit::analysis::{JointCoverage, is_within_ranges};
 use poecal_fit::parameters::Parameter;
-use poecal_fit::state::{Chain, Estimate, Linkage, RowError, Session, sample_rows};
-use poecal_fit::uncertainty::{Discrepancy, PredictedError, Refit, Uncertainty};
-use poecal_model::measurement::{ByQuantity, Dataset, Measured, NUMBERS, Noise, Quantity};
+use poecal_fit::state::{Estimate, Linkage, RowChain, RowError, Session, sample_rows};
+use poecal_fit::uncertainty::{Discrepancy, FrameRefit, PredictedError, Uncertainty};
+use poecal_model::measurement::{ByQuantity, Dataset, MeasuredQuantities, NUMBERS, Noise, Quantity};
 use poecal_numerics::linalg;
 use poecal_numerics::unit::Unit;
 
@@ -35,14 +35,14 @@ pub struct PredictedUncertainty<'a> {
 pub struct CoverageCheck {
     /// Coverage of each measured quantity, millimetres or degrees; of rotations only if they were calibrated too.
     #[serde(flatten)]
-    pub parts: Measured<PartCoverage>,
+    pub parts: MeasuredQuantities<QuantityCoverage>,
     /// Share of the configurations with every joint inside the sampled range.
     pub inside_sampled_range: f64,
 }
 
 /// Coverage of one quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PartCoverage {
+pub struct QuantityCoverage {
     /// Expected root mean square error between measured and predicted, measurement noise included.
     pub expected_rms: f64,
     /// Share of the errors within their own 95 % bound.
@@ -52,13 +52,13 @@ pub struct PartCoverage {
 impl CoverageCheck {
     /// Coverage of positions, millimetres.
     #[must_use]
-    pub fn position_mm(&self) -> PartCoverage {
+    pub fn position_mm(&self) -> QuantityCoverage {
         self.parts.position_mm()
     }
 
     /// Coverage of rotations, degrees, if orientation was measured.
     #[must_use]
-    pub fn rotation_deg(&self) -> Option<PartCoverage> {
+    pub fn rotation_deg(&self) -> Option<QuantityCoverage> {
         self.parts.rotation_deg()
     }
 
@@ -69,10 +69,10 @@ impl CoverageCheck {
     }
 }
 
-impl Default for PartCoverage {
+impl Default for QuantityCoverage {
     /// Coverage without any errors.
     fn default() -> Self {
-        PartCoverage { expected_rms: 0.0, inside_bound95: 1.0 }
+        QuantityCoverage { expected_rms: 0.0, inside_bound95: 1.0 }
     }
 }
 
@@ -91,10 +91,10 @@ impl CoverageSums {
         self.count += 1;
     }
 
-    fn part(&self, unit: Unit) -> Option<PartCoverage> {
+    fn part(&self, unit: Unit) -> Option<QuantityCoverage> {
         let count = self.count as f64;
-        (self.count > 0).then(|| PartCoverage {
-            expected_rms: unit.shown(1.0) * (self.squares / count).sqrt(),
+        (self.count > 0).then(|| QuantityCoverage {
+            expected_rms: unit.in_shown_unit(1.0) * (self.squares / count).sqrt(),
             inside_bound95: self.within as f64 / count,
         })
     }
@@ -108,12 +108,12 @@ pub struct JudgedError {
     /// Measured minus predicted by component, for vectors in the device's axes; NaN for components that were not measured.
     pub residual: [f64; Quantity::MOST_COMPONENTS],
     /// Predictive distribution; `None` without uncertainty.
-    pub promised: Option<Promise>,
+    pub promised: Option<PredictiveDistribution>,
 }
 
 /// Predictive distribution of an error, measurement noise included.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Promise {
+pub struct PredictiveDistribution {
     /// Expected square of the error, square metres or square radians.
     pub variance: f64,
     /// Bound below which 95 % of such errors lie.
@@ -124,7 +124,7 @@ pub struct Promise {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JudgedRow {
     /// Errors of each measured quantity.
-    pub errors: Measured<JudgedError>,
+    pub errors: MeasuredQuantities<JudgedError>,
     /// True if every joint was inside the sampled range, or if none was stated.
     pub inside_sampled_range: bool,
     /// Error of the corners of a picture; `None` for other rows, and if the model sees none of them.
@@ -134,16 +134,20 @@ pub struct JudgedRow {
 impl JudgedRow {
     /// A row without a predictive distribution.
     pub(crate) fn from_error(error: &RowError) -> Self {
-        let errors = Measured::from_fn(|quantity| JudgedError::from_error(error, quantity, None));
+        let errors = MeasuredQuantities::from_fn(|quantity| JudgedError::from_error(error, quantity, None));
         JudgedRow { errors, inside_sampled_range: true, corners: None }
     }
 }
 
 impl JudgedError {
     /// Error of a quantity, if it was measured.
-    fn from_error(error: &RowError, quantity: Quantity, promised: Option<Promise>) -> Option<Self> {
+    fn from_error(
+        error: &RowError,
+        quantity: Quantity,
+        promised: Option<PredictiveDistribution>,
+    ) -> Option<Self> {
         let length = error.length(quantity)?;
-        let (measured, vector) = (error.measured(quantity), error.vector(quantity));
+        let (measured, vector) = (error.measured_components(quantity), error.vector(quantity));
         let residual = std::array::from_fn(|k| if measured[k] { vector[k] } else { f64::NAN });
         Some(JudgedError { length, residual, promised })
     }
@@ -160,7 +164,7 @@ impl CoverageCheck {
             sampled += usize::from(row.inside_sampled_range);
         }
         CoverageCheck {
-            parts: Measured::from_fn(|quantity| sums[quantity].part(quantity.unit())),
+            parts: MeasuredQuantities::from_fn(|quantity| sums[quantity].part(quantity.unit())),
             inside_sampled_range: sampled as f64 / count.max(1) as f64,
         }
     }
@@ -195,11 +199,15 @@ impl PredictedUncertainty<'_> {
         let predicted = self.uncertainty.predictions_of(places, packed);
         // The model error contains the noise, unless the two were separated.
         let noise = self.uncertainty.discrepancy.noise;
-        let mut observed =
-            Observed { session, estimate, linkage: Linkage::new(estimate), chain: Chain::default() };
+        let mut observed = ObservedCoverage {
+            session,
+            estimate,
+            linkage: Linkage::new(estimate),
+            chain: RowChain::default(),
+        };
         let all = predicted.into_iter().zip(errors).zip(rows).map(|((predicted, error), &row)| {
             let own = session.noise_of(session.observation(row), noise);
-            let errors = Measured::from_fn(|quantity| {
+            let errors = MeasuredQuantities::from_fn(|quantity| {
                 error.length(quantity)?;
                 let of_robot = observed.covariance(&predicted, row, quantity);
                 // The noise has as many components as there are numbers.
@@ -209,10 +217,10 @@ impl PredictedUncertainty<'_> {
                 let of_noise = of_picture(data, row, (quantity, robot)).unwrap_or(of_noise);
                 let covariance = of_robot + of_noise;
                 let bound = predicted.quantiles[quantity].bound(&covariance);
-                let promised = Some(Promise { variance: covariance.trace(), bound });
+                let promised = Some(PredictiveDistribution { variance: covariance.trace(), bound });
                 JudgedError::from_error(error, quantity, promised)
             });
-            let inside_sampled_range = inside(robot, self.coverage, data.readings(row as usize));
+            let inside_sampled_range = is_within_ranges(robot, self.coverage, data.readings(row as usize));
             JudgedRow { errors, inside_sampled_range, corners: None }
         });
         all.collect()
@@ -244,14 +252,14 @@ fn of_picture(data: &Dataset, row: u32, (quantity, robot): (Quantity, f64)) -> O
 }
 
 /// Uncertainty of targets in the observed rows.
-struct Observed<'a> {
+struct ObservedCoverage<'a> {
     session: &'a Session<'a>,
     estimate: &'a Estimate,
     linkage: Linkage,
-    chain: Chain,
+    chain: RowChain,
 }
 
-impl Observed<'_> {
+impl ObservedCoverage<'_> {
     /// Covariance of a row's numbers of one quantity: the target's own if its position or orientation was measured, `S P Sᵀ` for any other function,
     /// in the axes of the row's device.
     fn covariance(&mut self, predicted: &PredictedError, row: u32, quantity: Quantity) -> Matrix3<f64> {
@@ -288,7 +296,7 @@ impl Observed<'_> {
 
 /// Errors of the rows inside the sampled range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct InSampledRange {
+pub struct SampledRangeErrors {
     /// Number of rows.
     pub count: usize,
     /// Their errors.
@@ -298,7 +306,7 @@ pub struct InSampledRange {
 }
 
 /// Predictions of the judging rows.
-pub(crate) struct JudgedRows<'a> {
+pub(crate) struct JudgedPredictions<'a> {
     pub(crate) session: Session<'a>,
     pub(crate) estimate: Estimate,
     pub(crate) errors: Vec<RowError>,
@@ -310,10 +318,11 @@ pub(crate) struct JudgedRows<'a> {
 pub(crate) fn promised_rows(
     predicted: &PredictedUncertainty<'_>,
     refit_tool: bool,
-    seen: &JudgedRows<'_>,
+    seen: &JudgedPredictions<'_>,
 ) -> Option<Vec<JudgedRow>> {
     let data = seen.session.data;
-    let refitted = if seen.free.is_empty() { None } else { Some(refitted(predicted, refit_tool, seen)?) };
+    let refitted =
+        if seen.free.is_empty() { None } else { Some(refit_uncertainty(predicted, refit_tool, seen)?) };
     let own: Vec<usize> = (0..data.targets.len()).collect();
     let predicted = match &refitted {
         Some(uncertainty) => PredictedUncertainty { uncertainty, targets: &own, ..*predicted },
@@ -341,12 +350,12 @@ pub(crate) fn coverage_checks(
     data: &Dataset,
     rows: &[JudgedRow],
     errors: &[RowError],
-) -> (CoverageCheck, Option<InSampledRange>) {
+) -> (CoverageCheck, Option<SampledRangeErrors>) {
     let inside = || rows.iter().zip(errors).filter(|(row, _)| row.inside_sampled_range);
     let own = (0..).zip(rows).filter(|(_, row)| row.inside_sampled_range).map(|(at, _)| at);
     let own: Vec<u32> = own.collect();
     let errors: Vec<RowError> = inside().map(|(_, error)| *error).collect();
-    let some = (!errors.is_empty()).then(|| InSampledRange {
+    let some = (!errors.is_empty()).then(|| SampledRangeErrors {
         count: errors.len(),
         calibrated: model_accuracy(data, &own, &errors),
         promised: CoverageCheck::from_rows(inside().map(|(row, _)| row)),
@@ -355,14 +364,14 @@ pub(crate) fn coverage_checks(
 }
 
 /// Uncertainty of the errors that remain after device frame or targets were refitted: theory.md §9, *Coverage*.
-fn refitted(
+fn refit_uncertainty(
     predicted: &PredictedUncertainty<'_>,
     refit_tool: bool,
-    seen: &JudgedRows<'_>,
+    seen: &JudgedPredictions<'_>,
 ) -> Option<Uncertainty> {
     let number = |target: usize| predicted.targets.get(target).copied().filter(|_| !refit_tool);
     let targets: Vec<Option<usize>> = (0..seen.session.data.targets.len()).map(number).collect();
-    predicted.uncertainty.refitted(&Refit {
+    predicted.uncertainty.after_refit(&FrameRefit {
         session: seen.session,
         found: &seen.estimate,
         free: &seen.free,
@@ -384,8 +393,8 @@ mod tests {
     #[test]
     fn the_least_share_inside_is_that_of_the_worst_quantity() {
         let inside = |quantity| if quantity == Quantity::Position { 0.97 } else { 0.93 };
-        let part = |quantity| PartCoverage { expected_rms: 0.67, inside_bound95: inside(quantity) };
-        let parts = Measured::from_fn(|quantity| quantity.is_of_pose().then(|| part(quantity)));
+        let part = |quantity| QuantityCoverage { expected_rms: 0.67, inside_bound95: inside(quantity) };
+        let parts = MeasuredQuantities::from_fn(|quantity| quantity.is_of_pose().then(|| part(quantity)));
         assert_eq!(CoverageCheck { parts, inside_sampled_range: 1.0 }.least_inside(), 0.93);
     }
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
-use crate::corrections::{ROUNDING_OF_TERMS, cholesky, solved, whitened_rows};
+use crate::corrections::{ROUNDING_OF_TERMS, cholesky, solve_factored, whitened_rows};
 use crate::robust::RobustFit;
-use crate::run::Run;
+use crate::run::CalibrationRun;
 use poecal_fit::parameters::Parameter;
 use poecal_fit::problem::Problem;
 use poecal_fit::state::Estimate;
@@ -24,7 +24,7 @@ pub(crate) struct FitInformation<'a> {
 impl<'a> FitInformation<'a> {
     /// Information of a fit with its weights; `None` if it is not positive definite.
     pub(crate) fn from_fit(
-        run: &'a Run<'_>,
+        run: &'a CalibrationRun<'_>,
         ratios: &'a [Noise],
         (fit, weights): (&'a RobustFit, &'a [f64]),
     ) -> Option<Self> {
@@ -35,7 +35,7 @@ impl<'a> FitInformation<'a> {
         let prior =
             PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
         let normal = problem.normal(&fitted.estimate);
-        let factor = factor_of(&symmetric(&prior.with(&normal.gram, 1.0), normal.dim()))?;
+        let factor = factor_of(&symmetric_from_upper(&prior.added_to(&normal.gram, 1.0), normal.dim()))?;
         let gradient = normal.gradient.iter().zip(&prior.normal.gradient);
         let gradient = DVector::from_iterator(normal.dim(), gradient.map(|(rows, prior)| rows + prior));
         Some(FitInformation { problem, estimate: &fitted.estimate, factor, gradient })
@@ -47,8 +47,8 @@ impl<'a> FitInformation<'a> {
     }
 
     /// The inverse times a matrix.
-    pub(crate) fn solved(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
-        solved(&self.factor, right)
+    pub(crate) fn solve(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+        solve_factored(&self.factor, right)
     }
 
     /// The step to the optimum.
@@ -63,7 +63,7 @@ impl<'a> FitInformation<'a> {
     }
 
     /// Derivatives of the predicted poses of weighted pictures by the unknowns, as six motions of the row each, with the picture's index.
-    pub(crate) fn of_pictures(&self, run: &Run<'_>) -> Vec<(usize, Matrix6xX<f64>)> {
+    pub(crate) fn of_pictures(&self, run: &CalibrationRun<'_>) -> Vec<(usize, Matrix6xX<f64>)> {
         let pictures = &run.data.pictures.all;
         let counts = |row: u32| run.fit_rows.binary_search(&row).is_ok() && self.problem.weight(row) > 0.0;
         let own: Vec<usize> = (0..pictures.len()).filter(|&at| counts(pictures[at].row)).collect();
@@ -79,7 +79,7 @@ impl<'a> FitInformation<'a> {
 }
 
 /// A symmetric matrix from its upper triangle.
-pub(crate) fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
+pub(crate) fn symmetric_from_upper(upper: &[f64], n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
 }
 

@@ -2,6 +2,6 @@
 
 pub(crate) mod coverage_check;
 pub(crate) mod domain;
-pub(crate) mod expected;
+pub(crate) mod expected_errors;
 pub(crate) mod information;
-pub(crate) mod nominal;
+pub(crate) mod nominal_errors;

@@ -5,24 +5,24 @@ use serde::Serialize;
 use crate::acceptance::{Acceptance, AcceptedModel};
 use crate::run::accuracy::{Improvement, ModelAccuracy, model_accuracy};
 use crate::run::count::{measurements_words, of_device};
-use crate::steps::improvement::paired;
+use crate::steps::improvement::paired_improvement;
 use crate::steps::repeatability::{RepeatScatter, repeat_scatter};
 use crate::trust::coverage_check::{
-    CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PredictedUncertainty, coverage_checks,
+    CoverageCheck, JudgedPredictions, JudgedRow, PredictedUncertainty, SampledRangeErrors, coverage_checks,
     promised_rows,
 };
-use crate::{DeviceFrameKnowledge, corner_error, delivered};
+use crate::{DeviceFrameKnowledge, corner_error, nominal_estimate};
 use poecal_arm::lie::{Freedom, Pose};
 use poecal_fit::problem::MOST_UNKNOWNS;
 use poecal_fit::start::{Registration, free_parameters, register};
-use poecal_fit::state::{Packed, Range, Session};
+use poecal_fit::state::{PackedValues, RangeModel, Session};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
 /// A calibration to be judged, and its parts to be refitted to the judging measurements.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
+pub struct JudgedCalibration<'a> {
     /// The calibrated robot with its named targets.
     pub calibrated: &'a Robot,
     /// The nominal robot.
@@ -32,7 +32,7 @@ pub struct Subject<'a> {
     /// Device frames of further stations, in the order of the judging measurements.
     pub further_base_from_device: &'a [Pose],
     /// Zeros and scales of the distances of the stations, in that order; empty if all are plain.
-    pub ranges: &'a [Range],
+    pub ranges: &'a [RangeModel],
     /// Prior knowledge of the device's frame.
     pub frame: DeviceFrameKnowledge,
     /// Noise by which positions and rotations are weighted in a refit.
@@ -48,7 +48,7 @@ pub struct Subject<'a> {
 /// A part that was refitted to the judging measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Refitted {
+pub enum RefittedPart {
     /// Device frame.
     DeviceFrame,
     /// Positions of the targets, and their orientations if measured.
@@ -59,12 +59,12 @@ pub enum Refitted {
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_model::measurement::{Measured, Quantity};
+/// #     pub use poecal_model::measurement::{MeasuredQuantities, Quantity};
 /// #     pub use poecal_calibrate::{Judgement, Statistic};
 /// # }
-/// use poecal::{Measured, Quantity, Judgement, Statistic};
+/// use poecal::{MeasuredQuantities, Quantity, Judgement, Statistic};
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
-/// let calibrated = Measured::from_fn(|quantity| (quantity == Quantity::Position).then_some(errors));
+/// let calibrated = MeasuredQuantities::from_fn(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
 ///     in_sampled_range: None, improvement: None, acceptance: None, moved_device: None, repeats: None,
 ///     base_from_device: poecal_arm::lie::Pose::identity(),
@@ -76,7 +76,7 @@ pub struct Judgement {
     /// Number of measurements.
     pub count: usize,
     /// Refitted parts.
-    pub refitted: Vec<Refitted>,
+    pub refitted: Vec<RefittedPart>,
     /// Errors of the calibrated model.
     pub calibrated: ModelAccuracy,
     /// Errors of the corrected model, with its own coverage; `None` if the calibration has none.
@@ -87,7 +87,7 @@ pub struct Judgement {
     /// Coverage of the predicted bounds, if there are any.
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
-    pub in_sampled_range: Option<InSampledRange>,
+    pub in_sampled_range: Option<SampledRangeErrors>,
     /// Ratio of the error of the nominal model to that of the delivered one on these rows, device frame and targets fitted for both
     /// ([`improvement`]); `None` if the rows are too few for it, or if it was not requested.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -133,7 +133,7 @@ pub struct JudgedModel {
     /// Coverage of the predicted bounds, if there are any.
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
-    pub in_sampled_range: Option<InSampledRange>,
+    pub in_sampled_range: Option<SampledRangeErrors>,
 }
 
 /// Judges a calibration by measurements: theory.md §9, *Coverage*. The readings must be those of the robot, and every target one of its
@@ -143,13 +143,13 @@ pub struct JudgedModel {
 /// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be refitted, or none at all.
 ///
 /// ```
-/// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, JudgedCalibration, calibrate, judge};
+/// use poecal_model::simulate::{SessionKind, Simulation, elbow};
 /// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
-/// let made = exact.run(&elbow(), Kind::POINT)?;
+/// let made = exact.run(&elbow(), SessionKind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let calibrated = calibration.robot_with_targets();
-/// let subject = Subject {
+/// let subject = JudgedCalibration {
 ///     calibrated: &calibrated,
 ///     nominal: &calibration.nominal,
 ///     base_from_device: calibration.base_from_device,
@@ -166,21 +166,21 @@ pub struct JudgedModel {
 /// assert!(judgement.nominal.is_none());
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
-pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
+pub fn judge(subject: &JudgedCalibration<'_>, data: &Dataset) -> Result<Judgement> {
     check_count(subject, data)?;
     let mut refitted = Vec::new();
     if subject.refit_frame {
-        refitted.push(Refitted::DeviceFrame);
+        refitted.push(RefittedPart::DeviceFrame);
     }
     if subject.refit_tool {
-        refitted.push(Refitted::Tool);
+        refitted.push(RefittedPart::Tool);
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
     let nominal = (frame_is_common && subject.refit_tool).then(|| {
-        let packed = Packed::from_dataset(subject.nominal, data);
+        let packed = PackedValues::from_dataset(subject.nominal, data);
         model_accuracy(data, &data.all_rows(), &judged_rows(subject, subject.nominal, data, &packed).errors)
     });
-    let packed = Packed::from_dataset(subject.calibrated, data);
+    let packed = PackedValues::from_dataset(subject.calibrated, data);
     let rows = judged_rows(subject, subject.calibrated, data, &packed);
     let promised =
         subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
@@ -215,28 +215,31 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
 /// Ratio of the error of the nominal robot to that of the calibrated one on the same rows, with device frame and targets refitted for both:
 /// theory.md §9 (50). `None` if the rows are too few for it.
 #[must_use]
-pub fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement> {
-    let both =
-        Subject { refit_frame: subject.frame != DeviceFrameKnowledge::Base, refit_tool: true, ..*subject };
+pub fn improvement(subject: &JudgedCalibration<'_>, data: &Dataset) -> Option<Improvement> {
+    let both = JudgedCalibration {
+        refit_frame: subject.frame != DeviceFrameKnowledge::Base,
+        refit_tool: true,
+        ..*subject
+    };
     check_count(&both, data).ok()?;
     let [before, after] = [both.nominal, both.calibrated].map(|robot| {
-        let packed = Packed::from_dataset(robot, data);
+        let packed = PackedValues::from_dataset(robot, data);
         judged_rows(&both, robot, data, &packed).errors
     });
-    let (_, found) = paired(data, &data.all_rows(), [&before, &after]).leading()?;
+    let (_, found) = paired_improvement(data, &data.all_rows(), [&before, &after]).leading_value()?;
     Some(found)
 }
 
 /// Errors of a robot's predictions, with device frame and targets refitted as requested.
 pub(crate) fn judged_rows<'a>(
-    subject: &Subject<'_>,
+    subject: &JudgedCalibration<'_>,
     robot: &'a Robot,
     data: &'a Dataset,
-    packed: &'a Packed,
-) -> JudgedRows<'a> {
+    packed: &'a PackedValues,
+) -> JudgedPredictions<'a> {
     let session = Session::new(robot, data, packed, subject.refit_frame);
     let rows: Vec<u32> = data.all_rows();
-    let mut estimate = delivered(robot, data);
+    let mut estimate = nominal_estimate(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
     let mut free = Vec::new();
     for (device, base_from_device) in
@@ -257,11 +260,11 @@ pub(crate) fn judged_rows<'a>(
         free = free_parameters(&registration, &rows);
     }
     let errors = session.errors(&rows, &estimate);
-    JudgedRows { session, estimate, errors, free }
+    JudgedPredictions { session, estimate, errors, free }
 }
 
 /// Refuses measurements that cannot determine the refitted unknowns, and empty ones.
-pub(crate) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
+pub(crate) fn check_count(subject: &JudgedCalibration<'_>, data: &Dataset) -> Result<()> {
     let frames = (0..data.station_count()).map(|station| of_device(data, station, &data.all_rows()));
     let frame: usize = if subject.refit_frame { frames.sum() } else { 0 };
     let targets = data.target_freedoms(&data.all_rows()).into_iter().map(Freedom::count);
@@ -298,7 +301,7 @@ pub struct DeliveredModel<'a> {
     /// Coverage of its predicted bounds, if there are any.
     pub promised: Option<&'a CoverageCheck>,
     /// The same for rows inside the sampled range.
-    pub in_sampled_range: Option<&'a InSampledRange>,
+    pub in_sampled_range: Option<&'a SampledRangeErrors>,
 }
 
 impl Judgement {
@@ -311,7 +314,7 @@ impl Judgement {
 
     /// The delivered model: the corrected one if there is one with terms, otherwise the calibrated one.
     #[must_use]
-    pub fn delivered(&self) -> DeliveredModel<'_> {
+    pub fn delivered_model(&self) -> DeliveredModel<'_> {
         match self.with_terms() {
             Some(found) => DeliveredModel {
                 model: AcceptedModel::Corrected,

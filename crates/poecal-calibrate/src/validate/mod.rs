@@ -1,6 +1,6 @@
 //! A calibration judged by other measurements.
 
-pub(crate) mod arm_too;
-mod confirmed;
+pub(crate) mod compare_with_arm_fit;
+mod confirmation;
 mod gain;
 pub(crate) mod judge;

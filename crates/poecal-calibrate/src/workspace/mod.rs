@@ -4,11 +4,11 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use poecal_arm::{Arm, MOST_JOINTS};
 
 use super::{Calibration, DeviceFrameKnowledge, Level};
-use crate::trust::expected::allowed_readings;
+use crate::trust::expected_errors::allowed_readings;
 use poecal_arm::lie::{Pose, rotation};
-use poecal_fit::state::Packed;
+use poecal_fit::state::PackedValues;
 use poecal_fit::uncertainty::Uncertainty;
-use poecal_model::offsets::{Taught, with_tool_of};
+use poecal_model::offsets::{TaughtFrames, with_tool_of};
 use poecal_model::robot::{Joint, JointKind, Robot};
 use poecal_numerics::distributions::median;
 use poecal_numerics::linalg::cholesky_6;
@@ -45,7 +45,7 @@ pub struct Workspace {
     pub all: Displacements,
     /// Median and largest correction of each reading that moves the tip (rad, m), over configurations with a correction near the intended one. Empty
     /// for an arm with fewer than six, which cannot compensate every displacement.
-    pub joints: Vec<(String, JointKind, Spread)>,
+    pub joints: Vec<(String, JointKind, ValueSpread)>,
     /// Configurations whose displacement is smaller than the expected error of the calibration itself.
     pub needless: usize,
     /// Configurations with a corrected reading beyond the limits.
@@ -70,32 +70,32 @@ pub struct Displacements {
     /// Number of configurations.
     pub configurations: usize,
     /// Distances, metres.
-    pub position_m: Spread,
+    pub position_m: ValueSpread,
     /// Angles, radians.
-    pub rotation_rad: Spread,
+    pub rotation_rad: ValueSpread,
 }
 
 /// Median and largest of some values.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spread {
+pub struct ValueSpread {
     /// Median: half of the values are smaller.
     pub median: f64,
     /// The largest value.
     pub largest: f64,
 }
 
-impl Spread {
+impl ValueSpread {
     fn from_values(values: impl Iterator<Item = f64> + Clone) -> Self {
-        Spread { largest: values.clone().fold(0.0, f64::max), median: median(values).unwrap_or(0.0) }
+        ValueSpread { largest: values.clone().fold(0.0, f64::max), median: median(values).unwrap_or(0.0) }
     }
 }
 
 impl Displacements {
-    fn from_comparisons<'a>(places: impl Iterator<Item = &'a Compared> + Clone) -> Self {
+    fn from_comparisons<'a>(places: impl Iterator<Item = &'a ComparedConfiguration> + Clone) -> Self {
         Displacements {
             configurations: places.clone().count(),
-            position_m: Spread::from_values(places.clone().map(|it| it.moved_m)),
-            rotation_rad: Spread::from_values(places.map(|it| it.turned_rad)),
+            position_m: ValueSpread::from_values(places.clone().map(|it| it.moved_m)),
+            rotation_rad: ValueSpread::from_values(places.map(|it| it.turned_rad)),
         }
     }
 }
@@ -115,18 +115,18 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
     let nominal = with_tool_of(actual, &calibration.nominal)?;
     let (nominal_arm, readings) = nominal.arm(&[]).ok()?;
     let (actual_arm, own) = actual.arm(&[]).ok()?;
-    let allowed = sampled(calibration, &nominal, &readings)?;
+    let allowed = sampled_ranges(calibration, &nominal, &readings)?;
     if own != readings {
         return None;
     }
-    let arms = Arms { nominal: &nominal_arm, actual: &actual_arm };
+    let arms = ArmPair { nominal: &nominal_arm, actual: &actual_arm };
     let sample: Vec<Vec<f64>> = (0..CONFIGURATIONS).map(|index| configuration(index, &allowed)).collect();
     let tips: Vec<(Pose, Pose)> = sample.iter().map(|q| arms.tips(q)).collect();
     let base_is_known = calibration.frame == DeviceFrameKnowledge::Base;
     let fitted: Vec<(Pose, Pose)> = tips.iter().step_by(FITTED).copied().collect();
-    let taught = Taught::from_tips(&fitted, nominal.arm_m() / 3.0, base_is_known);
+    let taught = TaughtFrames::from_tips(&fitted, nominal.arm_m() / 3.0, base_is_known);
     let (axis, about) = axis_of(&nominal);
-    let mut compared: Vec<Compared> = sample
+    let mut compared: Vec<ComparedConfiguration> = sample
         .iter()
         .zip(&tips)
         .map(|(q, (nominal, actual))| arms.compare(q, &taught.tip(nominal), actual, &axis))
@@ -144,7 +144,7 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
         let name = names.get(reading)?.clone();
         let kind = nominal.joints.iter().find(|joint| joint.reading.name == name)?.kind;
         let changes = compared.iter().filter_map(|it| it.mended.as_ref()?.get(index).copied());
-        Some((name, kind, Spread::from_values(changes)))
+        Some((name, kind, ValueSpread::from_values(changes)))
     };
     Some(Workspace {
         about,
@@ -159,10 +159,11 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
 }
 
 /// The cells of the workspace that contain configurations; sorts the configurations by cell.
-fn cells(compared: &mut [Compared], cell_m: f64) -> Vec<WorkspaceCell> {
-    let at = |it: &Compared| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
+fn cells(compared: &mut [ComparedConfiguration], cell_m: f64) -> Vec<WorkspaceCell> {
+    let at =
+        |it: &ComparedConfiguration| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
     compared.sort_by_key(at);
-    let cell = |own: &[Compared]| {
+    let cell = |own: &[ComparedConfiguration]| {
         let [height, radius] = at(own.first()?);
         let squares = own.iter().map(|it| it.expected_m2).sum::<Option<f64>>();
         Some(WorkspaceCell {
@@ -189,11 +190,11 @@ fn expected_squares(
         let joints = robot.joints.iter().zip(&indices);
         values.extend(joints.map(|(joint, &index)| joint.reading.value(of(index).unwrap_or_default())));
     }
-    uncertainty.positions(&Packed::of_values(robot, &values), 0).iter().map(Matrix3::trace).collect()
+    uncertainty.positions(&PackedValues::of_values(robot, &values), 0).iter().map(Matrix3::trace).collect()
 }
 
 /// Sampled range of each of these readings; `None` if one has none.
-fn sampled(calibration: &Calibration, nominal: &Robot, readings: &[usize]) -> Option<Vec<[f64; 2]>> {
+fn sampled_ranges(calibration: &Calibration, nominal: &Robot, readings: &[usize]) -> Option<Vec<[f64; 2]>> {
     let ranges: Vec<[f64; 2]> =
         calibration.trust.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect();
     let allowed = allowed_readings(nominal, &ranges);
@@ -212,12 +213,12 @@ fn configuration(index: usize, allowed: &[[f64; 2]]) -> Vec<f64> {
 }
 
 /// Axis of the map.
-struct Axis {
+struct MapAxis {
     point: Vector3<f64>,
     direction: Vector3<f64>,
 }
 
-impl Axis {
+impl MapAxis {
     /// Distance of a position from the axis, and height above the base's origin along it.
     fn cylindrical(&self, place: &Vector3<f64>) -> (f64, f64) {
         let from_axis = place - self.point;
@@ -227,20 +228,20 @@ impl Axis {
 }
 
 /// The axis of the first joint, if it turns, pointing up; else the base's z axis.
-fn axis_of(robot: &Robot) -> (Axis, Option<String>) {
+fn axis_of(robot: &Robot) -> (MapAxis, Option<String>) {
     let first = robot.joints_to(robot.tip_body()).first().and_then(|&joint| robot.joints.get(joint));
     match first {
         Some(Joint { name, kind: JointKind::Revolute, screw, .. }) => {
             let direction = if screw.w().z < 0.0 { -screw.w() } else { screw.w() };
-            (Axis { point: screw.w().cross(&screw.v()), direction }, Some(name.clone()))
+            (MapAxis { point: screw.w().cross(&screw.v()), direction }, Some(name.clone()))
         }
-        _ => (Axis { point: Vector3::zeros(), direction: Vector3::z() }, None),
+        _ => (MapAxis { point: Vector3::zeros(), direction: Vector3::z() }, None),
     }
 }
 
 /// Side of the cells of a map: 1, 2 or 5 times a power of ten.
-fn cell(compared: &[Compared]) -> f64 {
-    let span = |of: fn(&Compared) -> f64| {
+fn cell(compared: &[ComparedConfiguration]) -> f64 {
+    let span = |of: fn(&ComparedConfiguration) -> f64| {
         let values = compared.iter().map(of);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
     };
@@ -252,13 +253,13 @@ fn cell(compared: &[Compared]) -> f64 {
 }
 
 /// The two arms.
-struct Arms<'a> {
+struct ArmPair<'a> {
     nominal: &'a Arm,
     actual: &'a Arm,
 }
 
 /// A compared configuration.
-struct Compared {
+struct ComparedConfiguration {
     /// Intended position of the tip: distance from the axis, height along it.
     radius_m: f64,
     height_m: f64,
@@ -271,16 +272,16 @@ struct Compared {
     expected_m2: Option<f64>,
 }
 
-impl Arms<'_> {
+impl ArmPair<'_> {
     fn tips(&self, q: &[f64]) -> (Pose, Pose) {
         (self.nominal.forward_kinematics(q), self.actual.forward_kinematics(q))
     }
 
     /// Compares the actual tip with its intended pose.
-    fn compare(&self, q: &[f64], meant: &Pose, actual: &Pose, axis: &Axis) -> Compared {
+    fn compare(&self, q: &[f64], meant: &Pose, actual: &Pose, axis: &MapAxis) -> ComparedConfiguration {
         let (radius_m, height_m) = axis.cylindrical(&meant.translation);
-        let (moved_m, turned_rad) = actual.apart(meant);
-        let found = Compared {
+        let (moved_m, turned_rad) = actual.distance_and_angle(meant);
+        let found = ComparedConfiguration {
             radius_m,
             height_m,
             moved_m,
@@ -292,12 +293,12 @@ impl Arms<'_> {
         if q.len() < FREE {
             return found;
         }
-        let Some(mended) = self.mended(q, meant) else { return found };
+        let Some(mended) = self.correct_configuration(q, meant) else { return found };
         let changes = mended.iter().zip(q).map(|(to, from)| (to - from).abs());
         let is_near = self.nominal.handedness(&mended) * self.nominal.handedness(q) >= 0.0;
         let is_within =
             |q: &[f64]| q.iter().zip(self.actual.limits()).all(|(q, (low, high))| (low..=high).contains(&q));
-        Compared {
+        ComparedConfiguration {
             is_beyond_limits: is_near && is_within(q) && !is_within(&mended),
             mended: is_near.then(|| changes.collect()),
             ..found
@@ -306,7 +307,7 @@ impl Arms<'_> {
 
     /// The configuration near this one with the actual tip at its intended pose: Newton's iteration by the least changes, `q ← q + Jᵀ (J Jᵀ)⁻¹ e`;
     /// `None` if it does not end near.
-    fn mended(&self, q: &[f64], meant: &Pose) -> Option<Vec<f64>> {
+    fn correct_configuration(&self, q: &[f64], meant: &Pose) -> Option<Vec<f64>> {
         let reach = self.actual.reach_m();
         let mut mended = q.to_vec();
         for _ in 0..STEPS {

@@ -2,10 +2,10 @@
 
 use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::{Dataset, Noise, Quantity};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_numerics::solve::LeastSquares;
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
@@ -32,14 +32,14 @@ const BASINS: [(f64, f64, usize, f64); 4] =
 
 /// Mean squared residual of a calibrated model, whitened by the true noise.
 fn mean_square(result: &Calibration, data: &Dataset, robot: &Robot) -> f64 {
-    let packed = Packed::new(robot, data.all_readings(), robot.joints.len());
+    let packed = PackedValues::new(robot, data.all_readings(), robot.joints.len());
     let rows = (0..CONFIGURATIONS as u32).collect();
     let session = Session::new(robot, data, &packed, false).with_length(1.0);
     Problem::new(session, rows, vec![], NOISE).normal(&result.models.calibrated).mean_square()
 }
 
 /// True if the fit from a start with these errors ends at the optimum of the fit from the truth.
-fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledge, seed: u64) -> bool {
+fn reaches_the_optimum(deg: f64, mm: f64, kind: SessionKind, frame: DeviceFrameKnowledge, seed: u64) -> bool {
     let simulation = Simulation {
         error_rotation_rad: deg.to_radians(),
         error_position_m: mm * 1e-3,
@@ -51,7 +51,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
         ..Simulation::default()
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let start = simulation.perturbed(&elbow(), &mut generator);
+    let start = simulation.perturb(&elbow(), &mut generator);
     let made = simulation.measure(&elbow(), elbow(), kind, &mut generator).unwrap();
     // Every other start has the prior that it is nearly right, which none of these is.
     let usual = geometry();
@@ -65,7 +65,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     fit(&start) < optimum * same
 }
 
-fn basins(kind: Kind, frame: DeviceFrameKnowledge) {
+fn basins(kind: SessionKind, frame: DeviceFrameKnowledge) {
     for (deg, mm, trials, wanted) in BASINS {
         let trials = self::trials(if frame == DeviceFrameKnowledge::Base { trials } else { trials / 3 });
         let count = trials.count;
@@ -85,20 +85,20 @@ fn basins(kind: Kind, frame: DeviceFrameKnowledge) {
 
 #[test]
 fn poses_in_the_base_frame() {
-    basins(Kind::POSE, DeviceFrameKnowledge::Base);
+    basins(SessionKind::POSE, DeviceFrameKnowledge::Base);
 }
 
 #[test]
 fn points_in_the_base_frame() {
-    basins(Kind::POINT, DeviceFrameKnowledge::Base);
+    basins(SessionKind::POINT, DeviceFrameKnowledge::Base);
 }
 
 #[test]
 fn poses_from_an_unknown_place() {
-    basins(Kind::POSE, DeviceFrameKnowledge::Unknown);
+    basins(SessionKind::POSE, DeviceFrameKnowledge::Unknown);
 }
 
 #[test]
 fn points_from_an_unknown_place() {
-    basins(Kind::POINT, DeviceFrameKnowledge::Unknown);
+    basins(SessionKind::POINT, DeviceFrameKnowledge::Unknown);
 }

@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::rotation;
 use poecal_calibrate::{
-    Calibration, CalibrationOptions, EventKind, Repaired, Repairs, calibrate, calibrate_repairing,
+    Calibration, CalibrationOptions, EventKind, RepairedSession, Repairs, calibrate, calibrate_repairing,
 };
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow};
 
 use poecal_testing::trials::trials;
 
@@ -15,27 +15,28 @@ const COUNT: usize = 80;
 /// Part of the statement about readings that were all early.
 const EARLY: &str = "before they came to rest";
 
-fn session(seed: u64, kind: Kind) -> Simulated {
+fn session(seed: u64, kind: SessionKind) -> SimulationResult {
     // Compliant gears, so that the robot has errors of its own beside the noise.
     let simulation = Simulation { count: COUNT, seed, noise_position_m: 5e-5, ..Simulation::default() };
     simulation.run(&elbow(), kind).unwrap()
 }
 
 /// The measured positions moved from one row on.
-fn moved(data: &mut Dataset, first: usize, by: impl Fn(usize, Vector3<f64>) -> Vector3<f64>) {
+fn move_rows_from(data: &mut Dataset, first: usize, by: impl Fn(usize, Vector3<f64>) -> Vector3<f64>) {
     for (row, observation) in data.observations.iter_mut().enumerate().skip(first) {
         observation.measurement = Measurement::point(by(row, observation.measurement.position().unwrap()));
     }
 }
 
-fn found(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> (Calibration, Dataset) {
-    let Repaired { calibration, data } = calibrate_repairing(robot, data, options, &mut |_| {}).unwrap();
+fn calibrate_repaired(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> (Calibration, Dataset) {
+    let RepairedSession { calibration, data } =
+        calibrate_repairing(robot, data, options, &mut |_| {}).unwrap();
     (calibration, data.into_owned())
 }
 
 /// Error of the first target's distances between positions of the truth, which no frame changes. `slipped` is the increase of the second joint's
 /// reading.
-fn error_mm(made: &Simulated, calibration: &Calibration, slipped: f64) -> f64 {
+fn error_mm(made: &SimulationResult, calibration: &Calibration, slipped: f64) -> f64 {
     let rows: Vec<&[f64]> = (0..COUNT).map(|row| made.data.readings(row)).collect();
     let target = calibration.targets[0].tip_from_target.translation;
     let is = |k: usize| made.actual.forward_kinematics(rows[k]).translation;
@@ -57,8 +58,9 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
     let trials = trials(8).at_least(4);
     let tilt = |v: Vector3<f64>| rotation::exp(&Vector3::new(0.0, 0.002, 0.004)) * v;
     for seed in trials.seeds() {
-        let clean = session(seed, Kind::POINT);
-        let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
+        let clean = session(seed, SessionKind::POINT);
+        let (calibration, _) =
+            calibrate_repaired(&clean.nominal, &clean.data, &CalibrationOptions::default());
         assert!(
             calibration.repairs.is_empty() && calibration.suspicions.is_empty(),
             "{:?}",
@@ -69,7 +71,8 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
         let mut lines = vec![format!("seed {seed}: clean {usual:.4} mm")];
         let mut check =
             |words: &str, data: &Dataset, kind: EventKind, from_row: usize, size: f64, within: f64| {
-                let (calibration, repaired) = found(&clean.nominal, data, &CalibrationOptions::default());
+                let (calibration, repaired) =
+                    calibrate_repaired(&clean.nominal, data, &CalibrationOptions::default());
                 let told: Vec<String> =
                     calibration.suspicions.iter().map(|it| it.statement.clone()).collect();
                 assert_eq!(calibration.repairs.len(), 1, "{words}: {told:?} {:?}", calibration.repairs);
@@ -87,17 +90,17 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
                 repaired
             };
         let mut data = clean.data.clone();
-        moved(&mut data, 40, |_, place| tilt(place) + Vector3::new(0.0, 0.002, 0.0));
-        let (calibration, _) = found(&clean.nominal, &data, &CalibrationOptions::default());
+        move_rows_from(&mut data, 40, |_, place| tilt(place) + Vector3::new(0.0, 0.002, 0.0));
+        let (calibration, _) = calibrate_repaired(&clean.nominal, &data, &CalibrationOptions::default());
         assert_eq!(calibration.repairs[0].kind, EventKind::Device);
         let mut data = clean.data.clone();
-        moved(&mut data, 40, |_, place| place + Vector3::new(0.0, 0.0006, 0.0008));
+        move_rows_from(&mut data, 40, |_, place| place + Vector3::new(0.0, 0.0006, 0.0008));
         let repaired = check("device 1 mm", &data, EventKind::Device, 41, 1.0, 0.1);
         assert_eq!(repaired.stations.iter().flatten().collect::<Vec<_>>(), ["device", "device.2"]);
         let mut data = clean.data.clone();
         let axes: Vec<_> =
             (0..COUNT).map(|row| clean.actual.forward_kinematics(clean.data.readings(row))).collect();
-        moved(&mut data, 40, |row, place| {
+        move_rows_from(&mut data, 40, |row, place| {
             place + clean.device_from_base.rotation * axes[row].rotation * Vector3::new(0.001, 0.0, 0.0)
         });
         let repaired = check("target 1 mm", &data, EventKind::Target, 41, 1.0, 0.1);
@@ -109,7 +112,9 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
         });
         check("zero 0.2 deg", &data, EventKind::Zero, 41, 0.2, 0.02);
         let mut data = clean.data.clone();
-        moved(&mut data, 0, |row, place| place + Vector3::new(0.0, 1e-3 * row as f64 / COUNT as f64, 0.0));
+        move_rows_from(&mut data, 0, |row, place| {
+            place + Vector3::new(0.0, 1e-3 * row as f64 / COUNT as f64, 0.0)
+        });
         check("drift 1 mm", &data, EventKind::Drift, 1, 1.0, 0.15);
         println!("{}", lines.join("\n"));
     }
@@ -128,8 +133,8 @@ fn with_readings(data: &Dataset, change: impl Fn(usize, &mut [f64])) -> Dataset 
 
 #[test]
 fn configurations_that_are_wrong_as_a_whole_are_left_out() {
-    let clean = session(3, Kind::POSE);
-    let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
+    let clean = session(3, SessionKind::POSE);
+    let (calibration, _) = calibrate_repaired(&clean.nominal, &clean.data, &CalibrationOptions::default());
     let usual = error_mm(&clean, &calibration, 0.0);
     // Readings taken a degree before the arm was there.
     let wrong = [7, 20, 33, 51, 64];
@@ -138,7 +143,7 @@ fn configurations_that_are_wrong_as_a_whole_are_left_out() {
             readings.iter_mut().for_each(|value| *value += 0.01);
         }
     });
-    let (calibration, _) = found(&clean.nominal, &data, &CalibrationOptions::default());
+    let (calibration, _) = calibrate_repaired(&clean.nominal, &data, &CalibrationOptions::default());
     let error = error_mm(&clean, &calibration, 0.0);
     let known: Vec<u32> = calibration.robustness.suspects().collect();
     println!(
@@ -151,10 +156,10 @@ fn configurations_that_are_wrong_as_a_whole_are_left_out() {
 
 #[test]
 fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
-    let mut made = session(5, Kind::POINT);
-    moved(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.002, 0.0));
+    let mut made = session(5, SessionKind::POINT);
+    move_rows_from(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.002, 0.0));
     let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
-    let (calibration, data) = found(&made.nominal, &made.data, &options);
+    let (calibration, data) = calibrate_repaired(&made.nominal, &made.data, &options);
     let [event] = &calibration.suspicions[..] else { panic!("{:?}", calibration.suspicions) };
     println!("{:?}: {}", calibration.verdict.level, event.statement);
     assert!(calibration.repairs.is_empty() && data == made.data);
@@ -171,9 +176,9 @@ fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
 
 #[test]
 fn what_is_larger_than_a_repair_may_be_is_named_and_not_acted_upon() {
-    let mut made = session(5, Kind::POINT);
-    moved(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.08, 0.0));
-    let (calibration, data) = found(&made.nominal, &made.data, &CalibrationOptions::default());
+    let mut made = session(5, SessionKind::POINT);
+    move_rows_from(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.08, 0.0));
+    let (calibration, data) = calibrate_repaired(&made.nominal, &made.data, &CalibrationOptions::default());
     let [event] = &calibration.suspicions[..] else { panic!("{:?}", calibration.suspicions) };
     println!("{}", event.statement);
     assert!(calibration.repairs.is_empty() && data == made.data && event.kind == EventKind::Device);
@@ -181,19 +186,19 @@ fn what_is_larger_than_a_repair_may_be_is_named_and_not_acted_upon() {
     assert_eq!(calibration.verdict.reasons.first(), Some(&event.statement));
     let repair_limits = "device=100mm".parse().unwrap();
     let options = CalibrationOptions { repair_limits, ..CalibrationOptions::default() };
-    let (calibration, _) = found(&made.nominal, &made.data, &options);
+    let (calibration, _) = calibrate_repaired(&made.nominal, &made.data, &options);
     assert_eq!((calibration.repairs.len(), calibration.suspicions.len()), (1, 0));
 }
 
 #[test]
 fn a_mistake_that_explains_more_is_named_and_nothing_is_repaired() {
     for seed in trials(4).at_least(2).seeds() {
-        let mut made = session(seed, Kind::POINT);
-        moved(&mut made.data, 0, |_, place| Vector3::new(place.x, place.y, 1e-3 * place.z));
+        let mut made = session(seed, SessionKind::POINT);
+        move_rows_from(&mut made.data, 0, |_, place| Vector3::new(place.x, place.y, 1e-3 * place.z));
         for repair_limits in ["device=50mm", "device=10m,tool=10m,zero=180deg"] {
             let repair_limits = repair_limits.parse().unwrap();
             let options = CalibrationOptions { repair_limits, ..CalibrationOptions::default() };
-            let (calibration, _) = found(&made.nominal, &made.data, &options);
+            let (calibration, _) = calibrate_repaired(&made.nominal, &made.data, &options);
             let said: Vec<&String> = calibration.diagnosis.iter().map(|it| &it.statement).collect();
             println!("seed {seed}: {said:?} {:?}", calibration.suspicions);
             assert!(calibration.repairs.is_empty(), "{:?}", calibration.repairs);
@@ -206,7 +211,7 @@ fn a_mistake_that_explains_more_is_named_and_nothing_is_repaired() {
 #[test]
 fn readings_that_are_all_early_are_named_with_their_angle() {
     for (seed, early_deg) in [(1, 0.05), (2, 0.2), (3, 0.1)] {
-        let made = session(seed, Kind::POINT);
+        let made = session(seed, SessionKind::POINT);
         let data = with_readings(&made.data, |row, readings| {
             let Some(before) = row.checked_sub(1).map(|row| made.data.readings(row)) else { return };
             let way: Vec<f64> = readings.iter().zip(before).map(|(own, before)| own - before).collect();
@@ -216,7 +221,7 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
                 .zip(&way)
                 .for_each(|(own, way)| *own -= f64::to_radians(early_deg) * way / largest);
         });
-        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        let (calibration, _) = calibrate_repaired(&made.nominal, &data, &CalibrationOptions::default());
         let said: Vec<&String> = calibration.warnings.iter().filter(|it| it.contains(EARLY)).collect();
         println!("{early_deg} deg: {said:?} {:?}", calibration.repairs);
         let [said] = said[..] else { panic!("{:?}", calibration.warnings) };
@@ -230,7 +235,7 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
                 readings.iter_mut().zip(&way).for_each(|(own, way)| *own += 1e-3 * way / largest);
             }
         });
-        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        let (calibration, _) = calibrate_repaired(&made.nominal, &data, &CalibrationOptions::default());
         assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
     }
 }
@@ -239,12 +244,12 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
 #[test]
 fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
     for seed in trials(6).at_least(3).seeds() {
-        let made = session(seed, Kind::POINT);
+        let made = session(seed, SessionKind::POINT);
         let step = 0.1_f64.to_radians();
         let data = with_readings(&made.data, |_, readings| {
             readings.iter_mut().for_each(|value| *value = (*value / step).round() * step);
         });
-        let (calibration, _) = found(&made.nominal, &data, &CalibrationOptions::default());
+        let (calibration, _) = calibrate_repaired(&made.nominal, &data, &CalibrationOptions::default());
         assert!(calibration.warnings.iter().any(|it| it.contains("are rounded to 0.1 deg")));
         let left_mm = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
         let expected_mm = calibration.verdict.expected_error_mm.unwrap();

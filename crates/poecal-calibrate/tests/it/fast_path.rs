@@ -7,14 +7,16 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::fit_screws;
 use poecal_fit::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal_fit::problem::{Problem, Refit, SimdLevel, simd_levels, stated_level};
-use poecal_fit::state::{self as estimate, Estimate, Packed, delivered};
+use poecal_fit::state::{self as estimate, Estimate, PackedValues, nominal_estimate};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal_model::robot::{Robot, Term};
-use poecal_model::simulate::{Kind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
-use poecal_numerics::solve::{LeastSquares, Normal, Options, minimize};
-use poecal_testing::largest::larger;
+use poecal_model::simulate::{
+    SessionKind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis,
+};
+use poecal_numerics::solve::{LeastSquares, NormalEquations, Options, minimize};
+use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions::geometry;
-use poecal_testing::trials::some;
+use poecal_testing::trials::choose_some;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -61,7 +63,7 @@ struct Case {
 }
 
 /// More rows than are sorted at a time; only some late ones are of another kind.
-fn many() -> Case {
+fn many_rows_case() -> Case {
     Case { rows: 9000, targets: 3, stated: true, late: 8500, ..Case::default() }
 }
 
@@ -82,21 +84,21 @@ fn cases() -> Vec<Case> {
         Case { rows: 40, turned_rad: 0.2, ..plain },
         Case { rows: 40, turned_rad: 3.1, any_ratio: true, stated: true, ..plain },
         Case { rows: 2100, targets: 2, ..plain },
-        many(),
+        many_rows_case(),
     ]
 }
 
 struct Session {
     robot: Robot,
     data: Dataset,
-    packed: Packed,
+    packed: PackedValues,
     estimate: Estimate,
     free: Vec<Parameter>,
     weights: Vec<f64>,
 }
 
 impl Session {
-    fn new(robot: &Robot, kind: Kind, case: &Case) -> Self {
+    fn new(robot: &Robot, kind: SessionKind, case: &Case) -> Self {
         let made = Simulation { count: case.rows, ..Simulation::default() }.run(robot, kind).unwrap();
         let mut data = made.data.clone();
         data.targets = (0..case.targets).map(|target| Some(format!("t{target}"))).collect();
@@ -113,7 +115,7 @@ impl Session {
             if row > 20 {
                 let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * case.turned_rad));
                 let turned = |pose: Pose| Pose::new(turn * pose.rotation, pose.translation);
-                observation.measurement = observation.measurement.changed(turned).unwrap();
+                observation.measurement = observation.measurement.map_pose(turned).unwrap();
             }
         }
         let home = |target: usize| robot.home * Pose::from_translation(Vector3::x() * (0.1 * target as f64));
@@ -123,7 +125,7 @@ impl Session {
             made.device_from_base * Pose::from_xyz_rpy([0.0, 0.1, 0.2], [0.1, station as f64, 0.0])
         };
         estimate = estimate.with_further_devices((1..=case.further).map(moved).collect());
-        let packed = Packed::from_dataset(robot, &data);
+        let packed = PackedValues::from_dataset(robot, &data);
         let weights = (0..case.rows).map(|row| [1.0, 0.3, 0.0, 2.5][row % 4]).collect();
         let free = parameters(robot, &data, case);
         Session { robot: robot.clone(), data, packed, estimate, free, weights }
@@ -137,7 +139,7 @@ impl Session {
     }
 }
 
-fn in_session<'a>(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed) -> estimate::Session<'a> {
+fn in_session<'a>(robot: &'a Robot, data: &'a Dataset, packed: &'a PackedValues) -> estimate::Session<'a> {
     estimate::Session::new(robot, data, packed, false).with_length(LENGTH_M)
 }
 
@@ -173,16 +175,17 @@ fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
 }
 
 /// Largest difference of Gram matrix, gradient and cost, each relative to the size of its summands.
-fn difference(fast: &Normal, general: &Normal) -> f64 {
+fn difference(fast: &NormalEquations, general: &NormalEquations) -> f64 {
     let n = general.dim();
     let size = |k: usize| general.gram[k * n + k].sqrt();
     let length = (2.0 * general.cost).sqrt();
     let mut worst = (fast.cost - general.cost).abs() / general.cost.max(f64::MIN_POSITIVE);
     for a in 0..n {
         let of = |value: f64, scale: f64| if scale > 0.0 { value.abs() / scale } else { value.abs() };
-        worst = larger(worst, of(fast.gradient[a] - general.gradient[a], size(a) * length));
+        worst = larger_or_nan(worst, of(fast.gradient[a] - general.gradient[a], size(a) * length));
         for b in a..n {
-            worst = larger(worst, of(fast.gram[a * n + b] - general.gram[a * n + b], size(a) * size(b)));
+            worst =
+                larger_or_nan(worst, of(fast.gram[a * n + b] - general.gram[a * n + b], size(a) * size(b)));
         }
     }
     assert_eq!(fast.residuals, general.residuals);
@@ -193,7 +196,7 @@ fn difference(fast: &Normal, general: &Normal) -> f64 {
 fn a_process_works_at_the_level_that_is_stated() {
     let name = stated_level().unwrap().name();
     println!("level {}", name.unwrap());
-    assert_eq!(SimdLevel::best().name(), name);
+    assert_eq!(SimdLevel::best_level().name(), name);
     match std::env::var("POECAL_SIMD").ok().filter(|stated| !stated.is_empty()) {
         Some(stated) => assert_eq!(name, Some(stated.as_str())),
         None => assert_eq!(name, simd_levels()[0].name()),
@@ -204,8 +207,9 @@ fn a_process_works_at_the_level_that_is_stated() {
 fn both_paths_agree() {
     for (name, robot) in robots() {
         let mut worst = (0.0, String::new());
-        for kind in [Kind::POSE, Kind::POINT, Kind::MIXED] {
-            for case in some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
+        for kind in [SessionKind::POSE, SessionKind::POINT, SessionKind::MIXED] {
+            for case in choose_some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100)
+            {
                 let session = Session::new(&robot, kind, case);
                 let general =
                     reference::normal(&session.problem(case, SimdLevel::BASELINE), &session.estimate);
@@ -222,7 +226,7 @@ fn both_paths_agree() {
                     // The approximation omits terms of rotations alone, and of `JᵀJ` alone.
                     let nearly = problem.nearly_normal(&session.estimate);
                     assert_eq!((&nearly.gradient, nearly.cost), (&fast.gradient, fast.cost), "{name}");
-                    assert!(kind != Kind::POINT || nearly == fast, "{name}");
+                    assert!(kind != SessionKind::POINT || nearly == fast, "{name}");
                 }
             }
         }
@@ -232,10 +236,10 @@ fn both_paths_agree() {
 
 #[test]
 fn sums_do_not_depend_on_threads() {
-    let case = many();
-    let session = Session::new(&elbow(), Kind::MIXED, &case);
+    let case = many_rows_case();
+    let session = Session::new(&elbow(), SessionKind::MIXED, &case);
     let of = |threads: usize| {
-        let problem = session.problem(&case, SimdLevel::best());
+        let problem = session.problem(&case, SimdLevel::best_level());
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| problem.normal(&session.estimate))
     };
@@ -247,14 +251,15 @@ fn sums_do_not_depend_on_threads() {
 #[test]
 fn few_passes_have_the_same_optimum() {
     let cases = [50, 50, 50, 500, 6000].into_iter().zip(1..);
-    for (kind, (count, seed)) in
-        [Kind::POSE, Kind::POINT].into_iter().flat_map(|kind| cases.clone().map(move |case| (kind, case)))
+    for (kind, (count, seed)) in [SessionKind::POSE, SessionKind::POINT]
+        .into_iter()
+        .flat_map(|kind| cases.clone().map(move |case| (kind, case)))
     {
         let simulation = Simulation { count, seed, ..Simulation::default() };
         let made = simulation.run(&elbow(), kind).unwrap();
-        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let packed = PackedValues::new(&made.nominal, made.data.all_readings(), 6);
         let rows = made.data.all_rows();
-        let mut start = delivered(&made.nominal, &made.data);
+        let mut start = nominal_estimate(&made.nominal, &made.data);
         start.device_from_base = made.device_from_base;
         let options = geometry();
         let session = in_session(&made.nominal, &made.data, &packed);
@@ -265,7 +270,7 @@ fn few_passes_have_the_same_optimum() {
         let (plain, normal, _) = minimize(&Plain(&problem), start, &strict);
         // Improvement of a prediction by further steps from the quick optimum, compared with the uncertainty due to noise.
         let rest = problem.normal(&quick);
-        let apart = farthest(&session, &rows, &quick, &plain);
+        let apart = farthest_prediction(&session, &rows, &quick, &plain);
         let excess = (rest.cost - normal.cost) / normal.mean_square();
         println!(
             "{kind:?} {count}: {} iterations, predictions apart by {apart:.1e} m, cost above by {excess:.1e}",
@@ -282,7 +287,7 @@ fn few_passes_have_the_same_optimum() {
 fn kernels_serve_the_kinds_that_they_know() {
     let robot = elbow();
     let kind = robot.joints[0].kind;
-    for seen in [Kind::POSE, Kind::POINT] {
+    for seen in [SessionKind::POSE, SessionKind::POINT] {
         let mut session = Session::new(&robot, seen, &Case { rows: 5, targets: 1, ..Case::default() });
         for parameter in [
             Parameter::ScrewAxis(ScrewAxis { joint: 0, kind }),
@@ -304,15 +309,15 @@ fn kernels_serve_the_kinds_that_they_know() {
 /// Other measurements in the same configurations: shared packing and factor, and the same optimum as a fit of its own.
 #[test]
 fn refits_have_the_same_optimum() {
-    for kind in [Kind::POSE, Kind::POINT] {
+    for kind in [SessionKind::POSE, SessionKind::POINT] {
         let simulation = Simulation { device_anywhere: false, ..Simulation::default() };
         let made = simulation.run(&elbow(), kind).unwrap();
-        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let packed = PackedValues::new(&made.nominal, made.data.all_readings(), 6);
         let rows: Vec<u32> = made.data.all_rows();
         let free = parameters(&made.nominal, &made.data, &Case::default());
         let first =
             Problem::new(in_session(&made.nominal, &made.data, &packed), rows.clone(), free.clone(), NOISE);
-        let start = delivered(&made.nominal, &made.data);
+        let start = nominal_estimate(&made.nominal, &made.data);
         let strict = Options { decrement: 1e-12, ..Options::default() };
         let (optimum, _, _) = minimize(&first, start.clone(), &strict);
         let mut refit = Refit::new(first, optimum.clone(), strict);
@@ -325,14 +330,14 @@ fn refits_have_the_same_optimum() {
             for observation in &mut data.observations {
                 let shift = random::normal_vector(&mut generator) * (scale * NOISE[Quantity::Position]);
                 let shifted = |pose: Pose| Pose::new(pose.rotation, pose.translation + shift);
-                observation.measurement = observation.measurement.changed(shifted).unwrap();
+                observation.measurement = observation.measurement.map_pose(shifted).unwrap();
             }
             let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();
             let (quick, _, summary) = refit.fit(&measured);
             let session = in_session(&made.nominal, &data, &packed);
             let own = Problem::new(session, rows.clone(), free.clone(), NOISE);
             let (plain, _, _) = minimize(&Plain(&own), optimum.clone(), &strict);
-            worst = larger(worst, farthest(&session, &rows, &quick, &plain) / scale);
+            worst = larger_or_nan(worst, farthest_prediction(&session, &rows, &quick, &plain) / scale);
             iterations += summary.iterations;
         }
         println!("{kind:?}: {:.1} iterations, predictions apart by {worst:.1e} m", iterations as f64 / 40.0);
@@ -350,7 +355,7 @@ impl LeastSquares for Plain<'_> {
         self.0.dim()
     }
 
-    fn normal(&self, state: &Estimate) -> Normal {
+    fn normal(&self, state: &Estimate) -> NormalEquations {
         reference::normal(self.0, state)
     }
 
@@ -372,7 +377,11 @@ impl LeastSquares for Plain<'_> {
 }
 
 /// Largest distance between the positions that two estimates predict, metres.
-fn farthest(session: &estimate::Session<'_>, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
+fn farthest_prediction(session: &estimate::Session<'_>, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
     let errors = |estimate| session.errors(rows, estimate);
-    errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m() - b.position_m()).norm()).fold(0.0, larger)
+    errors(a)
+        .iter()
+        .zip(errors(b))
+        .map(|(a, b)| (a.position_m() - b.position_m()).norm())
+        .fold(0.0, larger_or_nan)
 }

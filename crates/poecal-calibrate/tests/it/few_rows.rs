@@ -2,12 +2,12 @@
 
 use poecal_calibrate::{AcceptanceLimits, CalibrationOptions, calibrate};
 use poecal_model::measurement::{Dataset, Measurement, Quantity, Set};
-use poecal_model::simulate::{Kind, Simulation, elbow};
-use poecal_testing::sessions::{geometry, simulated};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
+use poecal_testing::sessions::{geometry, simulate_session};
 
 #[test]
 fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
-    let limits = AcceptanceLimits::chosen(vec!["1mm".parse().unwrap()], None).unwrap();
+    let limits = AcceptanceLimits::from_choice(vec!["1mm".parse().unwrap()], None).unwrap();
     let share = |held_out| CalibrationOptions { held_out, ..geometry() };
     let cases = [
         (38, geometry(), 0, Some(38)),
@@ -17,7 +17,7 @@ fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
         (38, CalibrationOptions { accept: limits, ..geometry() }, 11, None),
     ];
     for (count, options, held_out, few) in cases {
-        let made = simulated(&elbow(), Kind::POSE, count, 3);
+        let made = simulate_session(&elbow(), SessionKind::POSE, count, 3);
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
         assert_eq!(
             (found.held_out_rows.len(), found.accuracy.few_configurations),
@@ -26,7 +26,7 @@ fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
         );
         assert_eq!(found.accuracy.held_out.map_or(0, |it| it.count), held_out);
     }
-    let mut made = simulated(&elbow(), Kind::POSE, 38, 3);
+    let mut made = simulate_session(&elbow(), SessionKind::POSE, 38, 3);
     made.data.observations[7].set = Some(Set::HeldOut);
     let found = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     assert_eq!((&found.held_out_rows[..], found.accuracy.few_configurations), (&[7][..], None));
@@ -35,7 +35,8 @@ fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
 /// Cross-validation predicts each row once, and reports separately the rows outside the range of the others.
 #[test]
 fn rows_beyond_the_range_of_the_others_are_reported_apart() {
-    let made = Simulation { count: 200, seed: 8, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made =
+        Simulation { count: 200, seed: 8, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let value = |row: usize| made.data.readings(row)[1];
     let near = (0..200).filter(|&row| (value(row) - 0.6).abs() < 0.6).take(40);
     let far = (0..200).filter(|&row| (value(row) - 0.6).abs() > 2.0).take(1);

@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 
 use crate::mistakes::{Looked, Session, assert_mistakes_are_named, assert_no_alarms};
 use nalgebra::Vector3;
-use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
+use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, calibrate, nominal_estimate};
 use poecal_fit::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal_fit::start::{Registration, register};
-use poecal_fit::state::{self as estimate, Packed};
+use poecal_fit::state::{self as estimate, PackedValues};
 use poecal_model::measurement::{Dataset, Measurement, Noise};
 use poecal_model::robot::JointKind;
-use poecal_model::simulate::{Kind, Simulation, elbow};
-use poecal_testing::trials::{some, trials};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
+use poecal_testing::trials::{choose_some, trials};
 
 const KINDS: [DiagnosisKind; 12] = [
     DiagnosisKind::JointUnit,
@@ -33,7 +33,8 @@ const KINDS: [DiagnosisKind; 12] = [
 #[test]
 fn a_mistake_of_a_part_of_the_rows_is_named_with_these_rows() {
     for seed in trials(4).at_least(2).seeds() {
-        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+        let made =
+            Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
         let changed = |is_of: fn(usize) -> bool| {
             let mut data = Dataset::new(made.data.reading_names().to_vec());
             for row in 0..made.data.len() {
@@ -59,7 +60,7 @@ fn a_mistake_of_a_part_of_the_rows_is_named_with_these_rows() {
     }
 }
 
-fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
+fn diagnose_session(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
     let rows: Vec<u32> = data.all_rows();
     diagnose(
         &session.robot,
@@ -71,7 +72,7 @@ fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
 
 /// Root mean square position error of the nominal robot with fitted device and targets, metres.
 fn registered_m(session: &Session, data: &Dataset) -> f64 {
-    let packed = Packed::from_dataset(&session.robot, data);
+    let packed = PackedValues::from_dataset(&session.robot, data);
     let rows: Vec<u32> = data.all_rows();
     let registration = Registration {
         session: estimate::Session::new(&session.robot, data, &packed, session.device_free).with_length(0.33),
@@ -80,19 +81,19 @@ fn registered_m(session: &Session, data: &Dataset) -> f64 {
         targets_free: true,
         prior: None,
     };
-    let (_, cost) = register(&registration, &delivered(&session.robot, data));
+    let (_, cost) = register(&registration, &nominal_estimate(&session.robot, data));
     1e-3 * (2.0 * cost / data.len() as f64).sqrt()
 }
 
 /// A drawn session with a mistake of the kind that belongs to the index. Impossible mistakes are drawn again, and so are joint zeros that are not
 /// gross (registered error below 2.5 times that of the clean session), since a calibration is meant to absorb them. The zero of the first and last
 /// joint, and of slides that only shift the base, moves nothing at all.
-fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
+fn draw_mistaken_session(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
     let kind = KINDS[index as usize % KINDS.len()];
     for attempt in 0.. {
         let seed = index / KINDS.len() as u64 + 1000 * index + 77_777 * attempt;
-        let session = Session::drawn(seed);
-        let Some((data, words)) = session.mistaken(kind, seed) else { continue };
+        let session = Session::from_seed(seed);
+        let Some((data, words)) = session.with_mistake(kind, seed) else { continue };
         if kind == DiagnosisKind::JointZero
             && registered_m(&session, &data) < 2.5 * registered_m(&session, &session.data)
         {
@@ -106,8 +107,8 @@ fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
 #[test]
 fn mistakes_are_named() {
     assert_mistakes_are_named(trials(60), |index| {
-        let (session, kind, data, words) = mistaken(index);
-        let found = found(&session, &data);
+        let (session, kind, data, words) = draw_mistaken_session(index);
+        let found = diagnose_session(&session, &data);
         let is_right = !found.is_empty() && found.iter().all(|one| one.kind == kind);
         let words = format!("({words}); {}", session.words);
         Looked { label: format!("{kind:?}"), words, is_right, found }
@@ -118,14 +119,14 @@ fn mistakes_are_named() {
 #[test]
 fn a_column_in_another_unit_is_named_alone() {
     for seed in trials(12).seeds() {
-        let session = Session::drawn(700 + seed);
+        let session = Session::from_seed(700 + seed);
         let axis = seed as usize % 3;
         let mut data = session.data.clone();
         for row in &mut data.observations {
             assert!(row.measurement.is_place(), "{:?}", row.measurement);
             row.measurement.values_mut()[axis] *= 1e-3;
         }
-        let found = found(&session, &data);
+        let found = diagnose_session(&session, &data);
         let name = ["x", "y", "z"][axis];
         println!("{}: {found:?}", session.words);
         let [only] = &found[..] else { panic!("{name}, {}: {found:?}", session.words) };
@@ -135,7 +136,7 @@ fn a_column_in_another_unit_is_named_alone() {
 }
 
 /// An elbow in which each reading of a joint is that of the data plus a multiple of the reading before.
-fn coupled(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
+fn couple_readings(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
     let mut data = Dataset::new(session.data.reading_names().to_vec());
     data.targets.clone_from(&session.data.targets);
     for row in 0..session.data.len() {
@@ -148,9 +149,11 @@ fn coupled(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
 
 #[test]
 fn readings_that_are_sums_of_two_joints_are_named() {
-    for (seed, own, factor) in some([(0, 1.0, 1.0), (10, 1.0, -1.0), (20, -1.0, 1.0), (30, -1.0, -1.0)]) {
-        let session = Session::drawn(seed);
-        let found = found(&session, &coupled(&session, 2, own, factor));
+    for (seed, own, factor) in
+        choose_some([(0, 1.0, 1.0), (10, 1.0, -1.0), (20, -1.0, 1.0), (30, -1.0, -1.0)])
+    {
+        let session = Session::from_seed(seed);
+        let found = diagnose_session(&session, &couple_readings(&session, 2, own, factor));
         let kinds: Vec<_> = found.iter().map(|one| one.kind).collect();
         assert_eq!(kinds, [DiagnosisKind::JointsCoupled], "{}: {found:?}", session.words);
         // joint3 = (reading - factor joint2) / own
@@ -169,7 +172,7 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
     let sessions = trials(32);
     let (mut named, mut wrong) = (0, Vec::new());
     for seed in sessions.seeds() {
-        let session = Session::drawn(500 + seed);
+        let session = Session::from_seed(500 + seed);
         let joints = &session.robot.joints;
         let is_per_cent = seed % 2 == 0 && joints.iter().all(|it| it.limits.is_some());
         // Factors of percentages read as degrees, or of one gear.
@@ -184,8 +187,8 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
                 _ => 1.0,
             })
             .collect();
-        let data = scaled(&session, &factors);
-        let found = found(&session, &data);
+        let data = scale_readings(&session, &factors);
+        let found = diagnose_session(&session, &data);
         let (kinds, words) = (found.iter().map(|it| it.kind).collect::<Vec<_>>(), &session.words);
         let is_right = kinds == [DiagnosisKind::JointScale]
             && joints.iter().zip(&factors).all(|(joint, factor)| {
@@ -204,7 +207,7 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
 }
 
 /// A session whose readings have other sizes.
-fn scaled(session: &Session, factors: &[f64]) -> Dataset {
+fn scale_readings(session: &Session, factors: &[f64]) -> Dataset {
     let mut data = Dataset::new(session.data.reading_names().to_vec());
     data.targets.clone_from(&session.data.targets);
     for row in 0..session.data.len() {
@@ -224,15 +227,15 @@ fn told_with_calibration(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
 #[test]
 fn check_and_calibrate_name_the_same_mistakes() {
     let mut different = Vec::new();
-    let planted = some(0..KINDS.len() as u64).into_iter().map(mistaken);
-    let elbow = Session::drawn(0);
-    let data = coupled(&elbow, 2, 1.0, 1.0);
+    let planted = choose_some(0..KINDS.len() as u64).into_iter().map(draw_mistaken_session);
+    let elbow = Session::from_seed(0);
+    let data = couple_readings(&elbow, 2, 1.0, 1.0);
     for (session, kind, data, words) in
         planted.chain([(elbow, DiagnosisKind::JointsCoupled, data, "joint3 + joint2".to_owned())])
     {
         let kinds = |found: Vec<Diagnosis>| found.into_iter().map(|one| one.kind).collect::<BTreeSet<_>>();
         let (checked, calibrated) =
-            (kinds(found(&session, &data)), kinds(told_with_calibration(&session, &data)));
+            (kinds(diagnose_session(&session, &data)), kinds(told_with_calibration(&session, &data)));
         if checked != calibrated || !checked.contains(&kind) {
             different.push(format!(
                 "{kind:?} ({words}; {}): checked {checked:?}, calibrated {calibrated:?}",
@@ -245,8 +248,9 @@ fn check_and_calibrate_name_the_same_mistakes() {
 
 /// A session of an elbow whose rows see this number of targets in turn, with the sign of one joint wrong or not.
 fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
-    let mut session = Session::drawn(0);
-    let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
+    let mut session = Session::from_seed(0);
+    let made =
+        Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
     session.robot = made.nominal;
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
@@ -263,9 +267,9 @@ fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
 fn a_thousand_targets_are_looked_through() {
     let targets = trials(1000).at_least(300).count.min(1000);
     let (session, data) = of_targets(targets, 1.0);
-    assert_eq!(found(&session, &data), []);
+    assert_eq!(diagnose_session(&session, &data), []);
     let (session, data) = of_targets(targets, -1.0);
-    let found = found(&session, &data);
+    let found = diagnose_session(&session, &data);
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].kind, DiagnosisKind::JointSign);
     let (session, data) = of_targets(1000, -1.0);
@@ -281,7 +285,7 @@ fn a_thousand_targets_are_looked_through() {
 /// An elbow and 600 rows of 30 targets, each at a position of its own.
 fn of_many_places() -> (Session, Dataset) {
     let (session, _) = of_targets(30, 1.0);
-    let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
         let target = row % 30;
@@ -305,7 +309,7 @@ fn two_of_many_targets_exchanged_in_some_rows_are_named() {
             other => other,
         };
     }
-    let found = found(&session, &data);
+    let found = diagnose_session(&session, &data);
     assert_eq!(found.iter().map(|one| one.kind).collect::<Vec<_>>(), [DiagnosisKind::TargetsSwapped]);
     let statement = &found[0].statement;
     assert!(statement.contains("T7 and T21") || statement.contains("T21 and T7"), "{statement}");
@@ -314,7 +318,8 @@ fn two_of_many_targets_exchanged_in_some_rows_are_named() {
 #[test]
 fn a_clean_calibration_has_no_mistake() {
     let simulation = poecal_model::simulate::Simulation::default();
-    let made = simulation.run(&poecal_model::simulate::elbow(), poecal_model::simulate::Kind::POINT).unwrap();
+    let made =
+        simulation.run(&poecal_model::simulate::elbow(), poecal_model::simulate::SessionKind::POINT).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let rows: Vec<u32> = made.data.all_rows();
     let options =
@@ -325,8 +330,8 @@ fn a_clean_calibration_has_no_mistake() {
 #[test]
 fn clean_sessions_raise_no_alarm() {
     assert_no_alarms(trials(200), |index| {
-        let session = Session::drawn(index + 5_000_000);
-        let found = found(&session, &session.data);
+        let session = Session::from_seed(index + 5_000_000);
+        let found = diagnose_session(&session, &session.data);
         (session.words, found)
     });
 }

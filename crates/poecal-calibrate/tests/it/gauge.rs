@@ -1,16 +1,17 @@
 //! Gauge freedom: predictions are the same in all parameterisations of one robot, and the chosen one is nearest to nominal.
 
 use poecal_arm::lie::{Pose, rotation};
-use poecal_calibrate::{Calibration, CalibrationOptions, calibrate, delivered, radian_m};
+use poecal_calibrate::{Calibration, CalibrationOptions, calibrate, nominal_estimate, radian_m};
 use poecal_fit::gauge::base_motion;
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain};
 use poecal_model::measurement::{Dataset, Measurement};
-use poecal_model::offsets::Taught;
+use poecal_model::offsets::TaughtFrames;
 use poecal_model::robot::{Robot, Sizes};
 use poecal_model::simulate::{
-    Kind, Simulated, Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
+    SessionKind, Simulation, SimulationResult, elbow, gantry, random, random_chain, random_configuration,
+    scara, seven_axis,
 };
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions as common;
 use poecal_testing::sessions::geometry;
 use rand_chacha::ChaCha8Rng;
@@ -27,33 +28,33 @@ fn robots() -> Vec<Robot> {
     vec![elbow(), scara(), gantry(), seven_axis(), random_chain(5, 2), random_chain(9, 4)]
 }
 
-fn simulated(robot: &Robot, kind: Kind) -> Simulated {
-    common::simulated(robot, kind, 80, 3)
+fn simulate_case(robot: &Robot, kind: SessionKind) -> SimulationResult {
+    common::simulate_session(robot, kind, 80, 3)
 }
 
-fn calibrated(made: &Simulated) -> Calibration {
+fn calibrate_made(made: &SimulationResult) -> Calibration {
     calibrate(&made.nominal, &made.data, &CalibrationOptions { tolerance: None, ..geometry() }).unwrap()
 }
 
-fn packed(robot: &Robot, data: &Dataset) -> Packed {
-    Packed::from_dataset(robot, data)
+fn pack_values(robot: &Robot, data: &Dataset) -> PackedValues {
+    PackedValues::from_dataset(robot, data)
 }
 
 /// Largest distance and angle between predictions of two estimates.
-fn difference(a: &Estimate, b: &Estimate, data: &Dataset, packed: &Packed) -> (f64, f64) {
+fn difference(a: &Estimate, b: &Estimate, data: &Dataset, packed: &PackedValues) -> (f64, f64) {
     let (a, b) = (Linkage::new(a), Linkage::new(b));
-    let (mut at_a, mut at_b) = (Chain::default(), Chain::default());
+    let (mut at_a, mut at_b) = (RowChain::default(), RowChain::default());
     (0..packed.rows()).fold((0.0, 0.0), |(shift, turn), row| {
         let target = data.observations[row].target;
         at_a.evaluate(&a, packed, row, target);
         at_b.evaluate(&b, packed, row, target);
-        apart(&at_a.target, &at_b.target, (shift, turn))
+        pose_difference(&at_a.target, &at_b.target, (shift, turn))
     })
 }
 
-fn apart(a: &Pose, b: &Pose, (shift, turn): (f64, f64)) -> (f64, f64) {
+fn pose_difference(a: &Pose, b: &Pose, (shift, turn): (f64, f64)) -> (f64, f64) {
     let angle = rotation::log(&(a.rotation * b.rotation.transpose())).norm();
-    (larger(shift, (a.translation - b.translation).norm()), larger(turn, angle))
+    (larger_or_nan(shift, (a.translation - b.translation).norm()), larger_or_nan(turn, angle))
 }
 
 /// Objective of the gauge: tilts of the screws as arcs, and shifts seen from the nominal joint's origin (m²).
@@ -70,11 +71,11 @@ fn deviation(estimate: &Estimate, robot: &Robot) -> f64 {
 fn predictions_do_not_depend_on_the_gauge() {
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     for robot in robots() {
-        let made = simulated(&robot, Kind::MIXED);
-        let estimate = calibrated(&made).models.calibrated;
-        let rows = packed(&robot, &made.data);
+        let made = simulate_case(&robot, SessionKind::MIXED);
+        let estimate = calibrate_made(&made).models.calibrated;
+        let rows = pack_values(&robot, &made.data);
         let motion = Pose::new(random::rotation(&mut generator), random::direction(&mut generator) * 2.0);
-        let (shift, turn) = difference(&estimate, &estimate.rebased(&motion), &made.data, &rows);
+        let (shift, turn) = difference(&estimate, &estimate.rebase(&motion), &made.data, &rows);
         println!("{:12} {shift:.1e} m, {turn:.1e} rad", robot.name);
         assert!(shift < SAME && turn < SAME);
     }
@@ -84,14 +85,14 @@ fn predictions_do_not_depend_on_the_gauge() {
 fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
     let mut generator = ChaCha8Rng::seed_from_u64(2);
     for robot in robots() {
-        let made = simulated(&robot, Kind::POSE);
-        let chosen = calibrated(&made).models.calibrated;
-        let packed = Packed::from_dataset(&robot, &made.data);
+        let made = simulate_case(&robot, SessionKind::POSE);
+        let chosen = calibrate_made(&made).models.calibrated;
+        let packed = PackedValues::from_dataset(&robot, &made.data);
         let length_m = radian_m(&robot, &packed);
-        let targets = delivered(&robot, &made.data).base_from_target;
+        let targets = nominal_estimate(&robot, &made.data).base_from_target;
         let again = base_motion(&chosen, &robot, &targets, length_m).log().to_vector().norm();
-        let other = chosen.rebased(&Pose::exp(&common::random_twist(0.3, 0.2, &mut generator)));
-        let back = other.rebased(&base_motion(&other, &robot, &targets, length_m));
+        let other = chosen.rebase(&Pose::exp(&common::random_twist(0.3, 0.2, &mut generator)));
+        let back = other.rebase(&base_motion(&other, &robot, &targets, length_m));
         let [least, before, after] = [&chosen, &other, &back].map(|it| deviation(it, &robot).sqrt());
         println!(
             "{:12} second motion {again:.1e}; deviation {:.3} mm, moved away {:.1} mm, back {:.3} mm",
@@ -115,7 +116,7 @@ fn joint_deviation(result: &Calibration, joint: usize) -> f64 {
 #[test]
 fn what_the_data_leave_open_stays_nominal() {
     for (value, joint) in [(0.0, 2), (0.6, 2), (0.6, 0), (-1.1, 5)] {
-        let mut made = simulated(&elbow(), Kind::POSE);
+        let mut made = simulate_case(&elbow(), SessionKind::POSE);
         let mut still = Dataset::new(made.nominal.reading_names());
         let exact = made.device_from_base;
         for row in 0..made.data.len() {
@@ -125,7 +126,7 @@ fn what_the_data_leave_open_stays_nominal() {
             still.push(&readings, None, Measurement::of_pose(&pose)).unwrap();
         }
         made.data = still;
-        let result = calibrated(&made);
+        let result = calibrate_made(&made);
         let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
         let deviation = joint_deviation(&result, joint);
         // At zero only the joint's own axis is undetermined: it is exactly nominal. Elsewhere the later axes follow it.
@@ -146,9 +147,9 @@ fn what_the_data_leave_open_stays_nominal() {
 /// Targets of a session: name, whether a frame, and pose in the tip frame.
 type Target = (Option<&'static str>, bool, Pose);
 
-fn session(robot: &Robot, targets: &[Target]) -> Simulated {
+fn session(robot: &Robot, targets: &[Target]) -> SimulationResult {
     let simulation = Simulation { count: 0, seed: 5, ..Simulation::default() };
-    let mut made = simulation.run(robot, Kind::POSE).unwrap();
+    let mut made = simulation.run(robot, SessionKind::POSE).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(5);
     for _ in 0..60 {
         let readings = random_configuration(robot, &mut generator);
@@ -181,10 +182,10 @@ fn calibrated_robot_predicts_what_the_estimate_predicts() {
     for robot in [elbow(), gantry(), random_chain(7, 1)] {
         for targets in cases {
             let made = session(&robot, targets);
-            let result = calibrated(&made);
+            let result = calibrate_made(&made);
             let device_from_base = result.base_from_device.inverse();
-            let rows = packed(&robot, &made.data);
-            let (linkage, mut chain) = (Linkage::new(&result.models.calibrated), Chain::default());
+            let rows = pack_values(&robot, &made.data);
+            let (linkage, mut chain) = (Linkage::new(&result.models.calibrated), RowChain::default());
             let mut largest = (0.0, 0.0);
             for row in 0..made.data.len() {
                 let target = &result.targets[made.data.observations[row].target];
@@ -194,7 +195,7 @@ fn calibrated_robot_predicts_what_the_estimate_predicts() {
                 if !target.is_frame {
                     predicted.rotation = chain.target.rotation;
                 }
-                largest = apart(&predicted, &chain.target, largest);
+                largest = pose_difference(&predicted, &chain.target, largest);
             }
             let names: Vec<_> = targets.iter().map(|it| (it.0.unwrap_or("tip"), it.1)).collect();
             println!("{:12} {names:?}: {:.1e} m, {:.1e} rad", robot.name, largest.0, largest.1);
@@ -209,10 +210,10 @@ fn check_tip(result: &Calibration, targets: &[Target]) {
     let unnamed = result.targets.iter().find(|target| target.name.is_none());
     let nominal = result.nominal.last_joint_from_tip();
     let found = result.robot.last_joint_from_tip();
-    let (_, turn) = apart(&found, &nominal, (0.0, 0.0));
+    let (_, turn) = pose_difference(&found, &nominal, (0.0, 0.0));
     match unnamed {
         Some(target) => {
-            assert!(apart(&target.tip_from_target, &Pose::identity(), (0.0, 0.0)).0 < SAME);
+            assert!(pose_difference(&target.tip_from_target, &Pose::identity(), (0.0, 0.0)).0 < SAME);
             // Its position was some 0.2 m from the nominal tip.
             assert!((found.translation - nominal.translation).norm() > 0.1);
             assert!(targets[0].1 || turn < SAME);
@@ -235,7 +236,7 @@ const OF_THE_BASE: f64 = 1.1;
 /// Distances (RMS, metres) between the tips and between the targets of the calibrated and the corrected model of a session in the base frame, each
 /// with the remaining distance after the best rigid motion. The last number is the difference of the corrected robot's predictions from the fit's in
 /// the device's frame.
-fn both_models(robot: &Robot, kind: Kind, seed: u64, move_tip: bool) -> ([(f64, f64); 2], f64) {
+fn both_models(robot: &Robot, kind: SessionKind, seed: u64, move_tip: bool) -> ([(f64, f64); 2], f64) {
     let simulation = Simulation { count: 60, seed, terms: Sizes::COMMON, ..Simulation::default() };
     let made = simulation.run(robot, kind).unwrap();
     let options = CalibrationOptions { move_tip, ..CalibrationOptions::default() };
@@ -255,7 +256,7 @@ fn both_models(robot: &Robot, kind: Kind, seed: u64, move_tip: bool) -> ([(f64, 
             let squares: f64 = pairs.iter().map(|(a, b)| (motion.act(a) - b).norm_squared()).sum();
             (squares / pairs.len() as f64).sqrt()
         };
-        let rigid = Taught::with_points(&[], &pairs, 1.0, false).base;
+        let rigid = TaughtFrames::with_points(&[], &pairs, 1.0, false).base;
         (rms(&Pose::identity()), rms(&rigid))
     };
     let device_from_base = corrected.stations[0].base_from_device.inverse();
@@ -265,16 +266,16 @@ fn both_models(robot: &Robot, kind: Kind, seed: u64, move_tip: bool) -> ([(f64, 
         let measured = made.data.observations[row as usize].measurement.pose().translation;
         (measured - predicted - error.position_m()).norm()
     });
-    ([places(|tip, _| *tip), places(|tip, target| *tip * *target)], differences.fold(0.0, larger))
+    ([places(|tip, _| *tip), places(|tip, target| *tip * *target)], differences.fold(0.0, larger_or_nan))
 }
 
 #[test]
 fn the_corrected_and_the_calibrated_model_have_one_base_and_one_tip() {
     for (robot, kind, move_tip) in [
-        (elbow(), Kind::POINT, false),
-        (elbow(), Kind::POSE, false),
-        (seven_axis(), Kind::POINT, false),
-        (seven_axis(), Kind::POINT, true),
+        (elbow(), SessionKind::POINT, false),
+        (elbow(), SessionKind::POSE, false),
+        (seven_axis(), SessionKind::POINT, false),
+        (seven_axis(), SessionKind::POINT, true),
     ] {
         let (both, otherwise) = both_models(&robot, kind, 5, move_tip);
         println!("{:12} move_tip {move_tip}: {both:?}, otherwise {otherwise:.1e}", robot.name);

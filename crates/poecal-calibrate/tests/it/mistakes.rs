@@ -7,7 +7,7 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_fit::forensics::{Diagnosis, DiagnosisKind};
 use poecal_model::measurement::{Dataset, Measurement, Observation};
 use poecal_model::robot::{JointKind, Robot};
-use poecal_model::simulate::random::{direction, shuffle, uniform};
+use poecal_model::simulate::random::{direction, shuffle, uniform_number};
 use poecal_model::simulate::{
     self, Simulation, elbow, gantry, random_chain, random_configuration, scara, seven_axis,
 };
@@ -42,37 +42,37 @@ pub(crate) fn robot(index: usize) -> Robot {
 }
 
 pub(crate) fn pick(generator: &mut ChaCha8Rng, count: usize) -> usize {
-    ((uniform(generator) * count as f64) as usize).min(count - 1)
+    ((uniform_number(generator) * count as f64) as usize).min(count - 1)
 }
 
-pub(crate) fn between(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
-    low + (high - low) * uniform(generator)
+pub(crate) fn draw_between(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
+    low + (high - low) * uniform_number(generator)
 }
 
 impl Session {
     /// A session drawn by its seed: robot, errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 30 to 200 rows of one to three targets, poses or points
     /// or both, random configurations or a smooth path, device anywhere or at the base.
-    pub(crate) fn drawn(seed: u64) -> Session {
+    pub(crate) fn from_seed(seed: u64) -> Session {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xf0e5_1c00);
         let g = &mut generator;
         let mut robot = robot(seed as usize);
         let simulation = Simulation {
-            error_rotation_rad: between(g, 0.5, 2.0).to_radians(),
-            error_position_m: between(g, 1e-3, 3e-3),
+            error_rotation_rad: draw_between(g, 0.5, 2.0).to_radians(),
+            error_position_m: draw_between(g, 1e-3, 3e-3),
             ..Simulation::default()
         };
-        let (noise_m, noise_rad) = (between(g, 2e-5, 1e-4), between(g, 5e-3, 2e-2).to_radians());
+        let (noise_m, noise_rad) = (draw_between(g, 2e-5, 1e-4), draw_between(g, 5e-3, 2e-2).to_radians());
         let targets = 1 + pick(g, 3);
         let count = 30 + 10 * (targets - 1) + pick(g, 150);
         let kind = pick(g, 3);
-        let device_free = uniform(g) < 0.75;
-        let smooth = uniform(g) < 0.25;
+        let device_free = uniform_number(g) < 0.75;
+        let smooth = uniform_number(g) < 0.25;
         // Reflectors are beside the flange: one on the last axis would not distinguish a moving axis from a still one.
         let nominal: Vec<Pose> = (0..targets)
-            .map(|_| Pose::new(simulate::random::rotation(g), direction(g) * between(g, 0.06, 0.15)))
+            .map(|_| Pose::new(simulate::random::rotation(g), direction(g) * draw_between(g, 0.06, 0.15)))
             .collect();
         robot.targets = nominal.iter().enumerate().map(|(k, pose)| (format!("target{k}"), *pose)).collect();
-        let actual = simulation.perturbed(&robot, g);
+        let actual = simulation.perturb(&robot, g);
         let placed: Vec<Pose> = nominal
             .iter()
             .map(|pose| *pose * Pose::exp(&poecal_testing::sessions::random_twist(0.02, 2e-3, g)))
@@ -83,8 +83,11 @@ impl Session {
             Pose::identity()
         };
         let mut data = Dataset::new(robot.reading_names());
-        let waves: Vec<[f64; 2]> =
-            robot.reading_names().iter().map(|_| [between(g, 0.15, 0.5), between(g, 0.0, 6.3)]).collect();
+        let waves: Vec<[f64; 2]> = robot
+            .reading_names()
+            .iter()
+            .map(|_| [draw_between(g, 0.15, 0.5), draw_between(g, 0.0, 6.3)])
+            .collect();
         for row in 0..count {
             let readings =
                 if smooth { on_path(&robot, &waves, row) } else { random_configuration(&robot, g) };
@@ -111,7 +114,7 @@ impl Session {
         Session { robot, data, device_free, turned: kind != 0, words }
     }
 
-    fn changed(&self, mut change: impl FnMut(usize, &mut [f64], &mut Observation)) -> Dataset {
+    fn with_changed_rows(&self, mut change: impl FnMut(usize, &mut [f64], &mut Observation)) -> Dataset {
         let mut data = Dataset::new(self.data.reading_names().to_vec());
         data.targets.clone_from(&self.data.targets);
         for row in 0..self.data.len() {
@@ -123,8 +126,8 @@ impl Session {
         data
     }
 
-    fn reposed(&self, change: impl Fn(Pose) -> Pose) -> Dataset {
-        self.changed(|_, _, observation| {
+    fn with_changed_poses(&self, change: impl Fn(Pose) -> Pose) -> Dataset {
+        self.with_changed_rows(|_, _, observation| {
             let pose = change(observation.measurement.pose());
             observation.measurement = if observation.measurement.sees_orientation() {
                 Measurement::of_pose(&pose)
@@ -135,7 +138,7 @@ impl Session {
     }
 
     /// The data with a mistake of a kind, and its description; `None` if this session cannot have it.
-    pub(crate) fn mistaken(&self, kind: DiagnosisKind, seed: u64) -> Option<(Dataset, String)> {
+    pub(crate) fn with_mistake(&self, kind: DiagnosisKind, seed: u64) -> Option<(Dataset, String)> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x3157_a4e5);
         let g = &mut generator;
         let n = self.robot.reading_names().len();
@@ -145,10 +148,10 @@ impl Session {
         let poses = self.turned;
         match kind {
             DiagnosisKind::JointUnit => {
-                let all = uniform(g) < 0.5;
+                let all = uniform_number(g) < 0.5;
                 let factor = if slides { 1e3 } else { 1f64.to_degrees() };
-                let factor = if uniform(g) < 0.5 { factor } else { 1.0 / factor };
-                let data = self.changed(|_, readings, _| {
+                let factor = if uniform_number(g) < 0.5 { factor } else { 1.0 / factor };
+                let data = self.with_changed_rows(|_, readings, _| {
                     for (k, reading) in readings.iter_mut().enumerate() {
                         *reading *=
                             if k == column || all && kinds[k] == kinds[column] { factor } else { 1.0 };
@@ -161,12 +164,13 @@ impl Session {
             }
             DiagnosisKind::PositionUnit => {
                 let factor = [1e3, 1e-3, 1.0 / 0.0254, 1.0 / 25.4][pick(g, 4)];
-                let data = self.reposed(|pose| Pose::new(pose.rotation, pose.translation * factor));
+                let data =
+                    self.with_changed_poses(|pose| Pose::new(pose.rotation, pose.translation * factor));
                 Some((data, format!("times {factor}")))
             }
             DiagnosisKind::JointSign => {
-                let other = if uniform(g) < 0.25 { pick(g, n) } else { column };
-                let data = self.changed(|_, readings, _| {
+                let other = if uniform_number(g) < 0.25 { pick(g, n) } else { column };
+                let data = self.with_changed_rows(|_, readings, _| {
                     readings[column] = -readings[column];
                     if other != column {
                         readings[other] = -readings[other];
@@ -175,10 +179,14 @@ impl Session {
                 Some((data, format!("columns {column} and {other}")))
             }
             DiagnosisKind::JointZero => {
-                let by = if slides { between(g, 0.05, 0.3) } else { between(g, 8.0, 180.0).to_radians() };
-                let by = if uniform(g) < 0.5 { by } else { -by };
+                let by = if slides {
+                    draw_between(g, 0.05, 0.3)
+                } else {
+                    draw_between(g, 8.0, 180.0).to_radians()
+                };
+                let by = if uniform_number(g) < 0.5 { by } else { -by };
                 Some((
-                    self.changed(|_, readings, _| readings[column] += by),
+                    self.with_changed_rows(|_, readings, _| readings[column] += by),
                     format!("column {column} by {by}"),
                 ))
             }
@@ -186,11 +194,14 @@ impl Session {
                 let other = pick(g, n);
                 let fits = other != column && kinds[other] == kinds[column];
                 fits.then(|| {
-                    (self.changed(|_, r, _| r.swap(column, other)), format!("columns {column}, {other}"))
+                    (
+                        self.with_changed_rows(|_, r, _| r.swap(column, other)),
+                        format!("columns {column}, {other}"),
+                    )
                 })
             }
             DiagnosisKind::QuaternionOrder => {
-                let wxyz_as_xyzw = uniform(g) < 0.5;
+                let wxyz_as_xyzw = uniform_number(g) < 0.5;
                 let reordered = |pose: Pose| {
                     let q = rotation::to_quaternion_xyzw(&pose.rotation);
                     let q = if wxyz_as_xyzw {
@@ -200,10 +211,10 @@ impl Session {
                     };
                     Pose::new(rotation::from_quaternion_xyzw(&q), pose.translation)
                 };
-                poses.then(|| (self.reposed(reordered), format!("w first: {wxyz_as_xyzw}")))
+                poses.then(|| (self.with_changed_poses(reordered), format!("w first: {wxyz_as_xyzw}")))
             }
             DiagnosisKind::InvertedPose => {
-                let whole = uniform(g) < 0.7;
+                let whole = uniform_number(g) < 0.7;
                 let inverse = |pose: Pose| {
                     if whole {
                         pose.inverse()
@@ -211,7 +222,7 @@ impl Session {
                         Pose::new(pose.rotation.transpose(), pose.translation)
                     }
                 };
-                let data = self.changed(|_, _, observation| {
+                let data = self.with_changed_rows(|_, _, observation| {
                     if let Some(pose) = observation.measurement.frame() {
                         observation.measurement = Measurement::of_pose(&inverse(pose));
                     }
@@ -228,7 +239,7 @@ impl Session {
                         pose.translation,
                     )
                 };
-                poses.then(|| (self.reposed(other), format!("meant {meant}, read {read}")))
+                poses.then(|| (self.with_changed_poses(other), format!("meant {meant}, read {read}")))
             }
             DiagnosisKind::LeftHanded => {
                 let mut mirror = Matrix3::identity();
@@ -244,18 +255,20 @@ impl Session {
                         format!("exchange from {axis}")
                     }
                 };
-                let turns = uniform(g) < 0.5;
+                let turns = uniform_number(g) < 0.5;
                 // A mirrored SCARA is one with a reversed slide, since all its axes are parallel.
                 let same = self.robot.name == "scara" && (turns || !poses || words == "axis 2");
                 let mirrored = |pose: Pose| {
                     let turned = if turns { mirror * pose.rotation * mirror } else { pose.rotation };
                     Pose::new(turned, mirror * pose.translation)
                 };
-                (!same).then(|| (self.reposed(mirrored), format!("{words}, orientations too: {turns}")))
+                (!same).then(|| {
+                    (self.with_changed_poses(mirrored), format!("{words}, orientations too: {turns}"))
+                })
             }
             DiagnosisKind::RowShift => {
                 let by = (1 + pick(g, 3)) * self.data.targets.len();
-                let later = uniform(g) < 0.5;
+                let later = uniform_number(g) < 0.5;
                 let mut data = Dataset::new(self.data.reading_names().to_vec());
                 data.targets.clone_from(&self.data.targets);
                 for row in by..self.data.len() {
@@ -266,22 +279,23 @@ impl Session {
                 Some((data, format!("by {by}, later: {later}")))
             }
             DiagnosisKind::JointScale => {
-                let factors: Vec<f64> = (0..n).map(|_| between(g, 0.5, 0.9)).collect();
-                let data = self.changed(|_, readings, _| {
+                let factors: Vec<f64> = (0..n).map(|_| draw_between(g, 0.5, 0.9)).collect();
+                let data = self.with_changed_rows(|_, readings, _| {
                     readings.iter_mut().zip(&factors).for_each(|(reading, factor)| *reading *= factor);
                 });
                 Some((data, format!("times {factors:?}")))
             }
             DiagnosisKind::JointsCoupled => {
                 let couples = column > 0 && !slides && kinds[column - 1] == JointKind::Revolute;
-                let factor = if uniform(g) < 0.5 { 1.0 } else { -1.0 };
+                let factor = if uniform_number(g) < 0.5 { 1.0 } else { -1.0 };
                 couples.then(|| {
-                    let data =
-                        self.changed(|_, readings, _| readings[column] += factor * readings[column - 1]);
+                    let data = self.with_changed_rows(|_, readings, _| {
+                        readings[column] += factor * readings[column - 1]
+                    });
                     (data, format!("column {column} by {factor} of the one before"))
                 })
             }
-            DiagnosisKind::TargetsSwapped => self.renamed(g),
+            DiagnosisKind::TargetsSwapped => self.exchange_names(g),
             // These sessions see one target in each configuration, from a device with a frame.
             DiagnosisKind::TargetsUnnamed
             | DiagnosisKind::BoardSize
@@ -294,7 +308,7 @@ impl Session {
             DiagnosisKind::DuplicateRows => {
                 let mut data = self.data.clone();
                 let copies = 1 + pick(g, 3);
-                let exact = uniform(g) < 0.5;
+                let exact = uniform_number(g) < 0.5;
                 let mut order: Vec<usize> = (0..data.len()).collect();
                 shuffle(g, &mut order);
                 for k in 0..copies {
@@ -313,12 +327,12 @@ impl Session {
     }
 
     /// The names of two targets exchanged in all rows, from a row on, or in single rows.
-    fn renamed(&self, g: &mut ChaCha8Rng) -> Option<(Dataset, String)> {
+    fn exchange_names(&self, g: &mut ChaCha8Rng) -> Option<(Dataset, String)> {
         if self.data.targets.len() < 2 {
             return None;
         }
         let count = self.data.len();
-        let (how, from) = (pick(g, 3), (count as f64 * between(g, 0.2, 0.8)) as usize);
+        let (how, from) = (pick(g, 3), (count as f64 * draw_between(g, 0.2, 0.8)) as usize);
         let single: Vec<usize> = (0..1 + pick(g, 3)).map(|_| pick(g, count)).collect();
         let concerned = |row: usize| match how {
             0 => true,
@@ -326,7 +340,7 @@ impl Session {
             _ => single.contains(&row),
         };
         let any = (0..count).any(|row| concerned(row) && self.data.observations[row].target < 2);
-        let data = self.changed(|row, _, observation| {
+        let data = self.with_changed_rows(|row, _, observation| {
             if concerned(row) && observation.target < 2 {
                 observation.target = 1 - observation.target;
             }

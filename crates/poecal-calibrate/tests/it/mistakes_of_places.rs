@@ -1,12 +1,12 @@
 //! Mistakes in sessions of anchors, spheres, sockets, planes, gravity and pairs are named, and clean ones raise no alarm.
 
-use crate::mistakes::{Looked, assert_mistakes_are_named, assert_no_alarms, between, pick};
+use crate::mistakes::{Looked, assert_mistakes_are_named, assert_no_alarms, draw_between, pick};
 use poecal_arm::lie::Pose;
 use poecal_fit::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal_model::measurement::{Dataset, KnownLength, Measurement, Observation, Quantity};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::random::uniform;
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_axis};
+use poecal_model::simulate::random::uniform_number;
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, random_chain, seven_axis};
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -16,23 +16,23 @@ const SOCKETS_M: f64 = 0.2;
 const SPHERE_M: f64 = 0.05;
 
 /// Sessions, each with its possible mistakes.
-const CASES: [(Kind, DiagnosisKind); 16] = [
-    (Kind::DISTANCE, DiagnosisKind::PlacesSwapped),
-    (Kind::DISTANCE, DiagnosisKind::LengthUnit),
-    (Kind::DISTANCE, DiagnosisKind::DistanceZero),
-    (Kind::CHANGE, DiagnosisKind::PlacesSwapped),
-    (Kind::CHANGE, DiagnosisKind::LengthUnit),
-    (Kind::SPHERE, DiagnosisKind::DistanceZero),
-    (Kind::SOCKET, DiagnosisKind::PlacesSwapped),
-    (Kind::SOCKET, DiagnosisKind::KnownLength),
-    (Kind::PLANE, DiagnosisKind::PlacesSwapped),
-    (Kind::HEIGHT, DiagnosisKind::HeightSign),
-    (Kind::HEIGHT, DiagnosisKind::LengthUnit),
-    (Kind::FLUSH, DiagnosisKind::PlacesSwapped),
-    (Kind::DIRECTION, DiagnosisKind::TiltUnit),
-    (Kind::BALL_BAR, DiagnosisKind::LengthUnit),
-    (Kind::RELATIVE, DiagnosisKind::PositionUnit),
-    (Kind::RELATIVE, DiagnosisKind::InvertedPose),
+const CASES: [(SessionKind, DiagnosisKind); 16] = [
+    (SessionKind::DISTANCE, DiagnosisKind::PlacesSwapped),
+    (SessionKind::DISTANCE, DiagnosisKind::LengthUnit),
+    (SessionKind::DISTANCE, DiagnosisKind::DistanceZero),
+    (SessionKind::CHANGE, DiagnosisKind::PlacesSwapped),
+    (SessionKind::CHANGE, DiagnosisKind::LengthUnit),
+    (SessionKind::SPHERE, DiagnosisKind::DistanceZero),
+    (SessionKind::SOCKET, DiagnosisKind::PlacesSwapped),
+    (SessionKind::SOCKET, DiagnosisKind::KnownLength),
+    (SessionKind::PLANE, DiagnosisKind::PlacesSwapped),
+    (SessionKind::HEIGHT, DiagnosisKind::HeightSign),
+    (SessionKind::HEIGHT, DiagnosisKind::LengthUnit),
+    (SessionKind::FLUSH, DiagnosisKind::PlacesSwapped),
+    (SessionKind::DIRECTION, DiagnosisKind::TiltUnit),
+    (SessionKind::BALL_BAR, DiagnosisKind::LengthUnit),
+    (SessionKind::RELATIVE, DiagnosisKind::PositionUnit),
+    (SessionKind::RELATIVE, DiagnosisKind::InvertedPose),
 ];
 
 /// A session of a robot that differs slightly from its model.
@@ -57,27 +57,27 @@ fn robot(index: usize) -> Robot {
 
 /// A session drawn by its seed: errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 60 to 180 rows. If a robot does not reach its positions, another is
 /// drawn.
-fn drawn(kind: Kind, seed: u64) -> Session {
+fn draw_session(kind: SessionKind, seed: u64) -> Session {
     let g = &mut ChaCha8Rng::seed_from_u64(seed ^ 0x9_1ace5);
     let simulation = Simulation {
-        error_rotation_rad: between(g, 0.5, 2.0).to_radians(),
-        error_position_m: between(g, 1e-3, 3e-3),
-        noise_position_m: between(g, 2e-5, 1e-4),
-        noise_rotation_rad: between(g, 5e-3, 2e-2).to_radians(),
+        error_rotation_rad: draw_between(g, 0.5, 2.0).to_radians(),
+        error_position_m: draw_between(g, 1e-3, 3e-3),
+        noise_position_m: draw_between(g, 2e-5, 1e-4),
+        noise_rotation_rad: draw_between(g, 5e-3, 2e-2).to_radians(),
         count: 60 + pick(g, 120),
         seed,
         ..Simulation::default()
     };
     // Not every robot can lay a face on planes of any direction.
-    let robot = robot(if kind == Kind::FLUSH { 0 } else { seed as usize });
-    let Some(Simulated { mut data, .. }) = simulation.run(&robot, kind).ok() else {
-        return drawn(kind, seed + 1_000_003);
+    let robot = robot(if kind == SessionKind::FLUSH { 0 } else { seed as usize });
+    let Some(SimulationResult { mut data, .. }) = simulation.run(&robot, kind).ok() else {
+        return draw_session(kind, seed + 1_000_003);
     };
-    if kind == Kind::SPHERE {
+    if kind == SessionKind::SPHERE {
         // The radius is known.
-        each(&mut data, |_, row| row.measurement = Measurement::distance(SPHERE_M));
+        change_observations(&mut data, |_, row| row.measurement = Measurement::distance(SPHERE_M));
     }
-    if kind == Kind::SOCKET {
+    if kind == SessionKind::SOCKET {
         let known = KnownLength { stations: [0, 1], length_m: SOCKETS_M, sigma_m: KnownLength::SIGMA_M };
         data.lengths.push(known);
     }
@@ -91,19 +91,19 @@ fn drawn(kind: Kind, seed: u64) -> Session {
     Session { robot, data, words }
 }
 
-fn each(data: &mut Dataset, mut change: impl FnMut(usize, &mut Observation)) {
+fn change_observations(data: &mut Dataset, mut change: impl FnMut(usize, &mut Observation)) {
     data.observations.iter_mut().enumerate().for_each(|(row, observation)| change(row, observation));
 }
 
 /// The session's data with a mistake of a kind, and its description.
-fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, String) {
+fn make_mistake(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, String) {
     let g = &mut ChaCha8Rng::seed_from_u64(seed ^ 0x0ddb_a115);
     let mut data = session.data.clone();
     let words = match kind {
-        DiagnosisKind::PlacesSwapped => renamed(&mut data, g),
+        DiagnosisKind::PlacesSwapped => rename_places(&mut data, g),
         DiagnosisKind::LengthUnit => {
             let factor = [25.4, 1.0 / 25.4, 10.0, 0.1, 1e3, 1e-3][pick(g, 6)];
-            each(&mut data, |_, row| {
+            change_observations(&mut data, |_, row| {
                 if [Quantity::Distance, Quantity::Height].iter().any(|it| row.measurement.has(*it)) {
                     row.measurement.values_mut()[0] *= factor;
                 }
@@ -112,8 +112,8 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
         }
         DiagnosisKind::DistanceZero => {
             // The radius of a probe's ball, a hook: 4 % to 20 % of a sphere's radius, or some of a wire.
-            let by_m = if uniform(g) < 0.5 { -1.0 } else { 1.0 } * between(g, 2e-3, 1e-2);
-            each(&mut data, |_, row| {
+            let by_m = if uniform_number(g) < 0.5 { -1.0 } else { 1.0 } * draw_between(g, 2e-3, 1e-2);
+            change_observations(&mut data, |_, row| {
                 if row.measurement.has(Quantity::Distance) {
                     row.measurement.values_mut()[0] += by_m;
                 }
@@ -129,7 +129,7 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
             // All heights over an unknown plane may count either way: its normal is found with them.
             let (start, end) = part(data.len(), g);
             let plane = pick(g, 4);
-            each(&mut data, |row, seen| {
+            change_observations(&mut data, |row, seen| {
                 let is_own = plane == 3 || plane == seen.station;
                 if seen.measurement.has(Quantity::Height) && (start..end).contains(&row) && is_own {
                     seen.measurement.values_mut()[0] *= -1.0;
@@ -138,14 +138,14 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
             format!("rows {start} to {end}, plane {plane}")
         }
         DiagnosisKind::TiltUnit => {
-            each(&mut data, |_, row| {
+            change_observations(&mut data, |_, row| {
                 row.measurement = row.measurement.with_angles_times(1f64.to_radians());
             });
             "degrees as radians".to_owned()
         }
         DiagnosisKind::PositionUnit | DiagnosisKind::InvertedPose => {
             let factor = [25.4, 1e-3, 1e3][pick(g, 3)];
-            each(&mut data, |_, row| {
+            change_observations(&mut data, |_, row| {
                 let mut pose = row.measurement.pose();
                 if kind == DiagnosisKind::PositionUnit {
                     pose.translation *= factor;
@@ -176,17 +176,17 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
 
 /// A part of a session: a tenth to four tenths of its rows.
 fn part(count: usize, g: &mut ChaCha8Rng) -> (usize, usize) {
-    let start = (count as f64 * between(g, 0.0, 0.6)) as usize;
-    (start, start + (count as f64 * between(g, 0.1, 0.4)) as usize)
+    let start = (count as f64 * draw_between(g, 0.0, 0.6)) as usize;
+    (start, start + (count as f64 * draw_between(g, 0.1, 0.4)) as usize)
 }
 
 /// Rows of one anchor that name another: a part of the session, or both names exchanged in it.
-fn renamed(data: &mut Dataset, g: &mut ChaCha8Rng) -> String {
+fn rename_places(data: &mut Dataset, g: &mut ChaCha8Rng) -> String {
     let places = data.station_count();
-    let (first, both) = (pick(g, places), uniform(g) < 0.5);
+    let (first, both) = (pick(g, places), uniform_number(g) < 0.5);
     let second = (first + 1 + pick(g, places - 1)) % places;
     let (start, end) = part(data.len(), g);
-    each(data, |row, observation| {
+    change_observations(data, |row, observation| {
         if (start..end).contains(&row) {
             if observation.station == first {
                 observation.station = second;
@@ -198,7 +198,7 @@ fn renamed(data: &mut Dataset, g: &mut ChaCha8Rng) -> String {
     format!("rows {start} to {end} of {first} name {second}, both ways: {both}")
 }
 
-fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
+fn diagnose_session(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
     diagnose(&session.robot, data, &data.all_rows(), &DiagnosisOptions::default())
 }
 
@@ -206,9 +206,9 @@ fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
 fn mistakes_of_places_are_named() {
     assert_mistakes_are_named(trials(64), |index| {
         let (measured, kind) = CASES[index as usize % CASES.len()];
-        let session = drawn(measured, index);
-        let (data, words) = mistaken(&session, kind, index);
-        let found = found(&session, &data);
+        let session = draw_session(measured, index);
+        let (data, words) = make_mistake(&session, kind, index);
+        let found = diagnose_session(&session, &data);
         let is_right = found.len() == 1 && found[0].kind == kind;
         let words = format!("({words}); {}", session.words);
         Looked { label: format!("{measured:?}, {kind:?}"), words, is_right, found }
@@ -217,10 +217,10 @@ fn mistakes_of_places_are_named() {
 
 #[test]
 fn clean_sessions_of_places_raise_no_alarm() {
-    let kinds: Vec<Kind> = Kind::all().into_iter().filter(|kind| !kind.has_device()).collect();
+    let kinds: Vec<SessionKind> = SessionKind::all().into_iter().filter(|kind| !kind.has_device()).collect();
     assert_no_alarms(trials(64), |index| {
-        let session = drawn(kinds[index as usize % kinds.len()], index + 7_000_000);
-        let found = found(&session, &session.data);
+        let session = draw_session(kinds[index as usize % kinds.len()], index + 7_000_000);
+        let found = diagnose_session(&session, &session.data);
         (session.words, found)
     });
 }

@@ -4,22 +4,22 @@ use std::path::PathBuf;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
-use poecal_calibrate::{Calibration, CalibrationOptions, Level, Robust, calibrate};
+use poecal_calibrate::{Calibration, CalibrationOptions, Level, RobustLoss, calibrate};
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, elbow, gantry, random_chain, scara, seven_axis};
-use poecal_testing::sessions::{calibrated as fit, simulated};
-use poecal_testing::trials::{some, trials};
+use poecal_model::simulate::{SessionKind, SimulationResult, elbow, gantry, random_chain, scara, seven_axis};
+use poecal_testing::sessions::{calibrate_session as fit, simulate_session};
+use poecal_testing::trials::{choose_some, trials};
 use rayon::prelude::*;
 
-const KINDS: [Kind; 2] = [Kind::POINT, Kind::POSE];
+const KINDS: [SessionKind; 2] = [SessionKind::POINT, SessionKind::POSE];
 
-fn session(robot: &Robot, kind: Kind, count: usize, seed: u64) -> Simulated {
-    simulated(robot, kind, count, 7000 + seed)
+fn session(robot: &Robot, kind: SessionKind, count: usize, seed: u64) -> SimulationResult {
+    simulate_session(robot, kind, count, 7000 + seed)
 }
 
 /// Each measurement as seen after a motion of the device, a function of the row.
-fn changed(made: &Simulated, motion: impl Fn(usize) -> Pose) -> Dataset {
+fn move_device(made: &SimulationResult, motion: impl Fn(usize) -> Pose) -> Dataset {
     let mut data = made.data.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
         let pose = motion(row) * observation.measurement.pose();
@@ -41,35 +41,35 @@ fn says(found: &Calibration, words: &str) -> bool {
 }
 
 /// All statements, for messages.
-fn said(found: &Calibration) -> String {
+fn describe_findings(found: &Calibration) -> String {
     format!("{:?}\n{:?}\n{:?}", found.verdict, found.warnings, found.diagnosis)
 }
 
 /// Asserts that with full weight of every row the motion has the same size.
 fn assert_size_by_least_squares(robot: &Robot, data: &Dataset) {
-    let options = CalibrationOptions { robust: Robust::Off, ..Default::default() };
+    let options = CalibrationOptions { robust: RobustLoss::Off, ..Default::default() };
     let found = calibrate(robot, data, &options).unwrap();
     let far = |it: &String| -> Option<f64> {
         it.split("the measurements are shifted by ").nth(1)?.split(' ').next()?.parse().ok()
     };
-    let far = found.warnings.iter().find_map(far).unwrap_or_else(|| panic!("{}", said(&found)));
+    let far = found.warnings.iter().find_map(far).unwrap_or_else(|| panic!("{}", describe_findings(&found)));
     assert!((far - 5.0).abs() < 0.2, "{far} mm");
 }
 
 #[test]
 fn a_device_moved_late_is_named_and_not_called_gross_rows() {
     for kind in KINDS {
-        for (count, seed) in some([(60, 1), (150, 2), (300, 3)]) {
+        for (count, seed) in choose_some([(60, 1), (150, 2), (300, 3)]) {
             let made = session(&elbow(), kind, count, seed);
             let from = count * 4 / 5;
             let moved = Vector3::new(3e-3, -4e-3, 0.0);
-            let data = changed(&made, |row| if row < from { Pose::identity() } else { shift(moved) });
+            let data = move_device(&made, |row| if row < from { Pose::identity() } else { shift(moved) });
             let found = fit(&made.nominal, &data);
             assert_size_by_least_squares(&made.nominal, &data);
             let words = format!("from row {} on the measurements are shifted by ", from + 1);
-            assert!(says(&found, &words), "{kind:?} {count}: {}", said(&found));
-            assert!(says(&found, "instrument"), "{}", said(&found));
-            assert!(!says(&found, "outlier"), "{}", said(&found));
+            assert!(says(&found, &words), "{kind:?} {count}: {}", describe_findings(&found));
+            assert!(says(&found, "instrument"), "{}", describe_findings(&found));
+            assert!(!says(&found, "outlier"), "{}", describe_findings(&found));
             let far: f64 = found
                 .warnings
                 .iter()
@@ -87,19 +87,20 @@ fn a_device_moved_halfway_is_named_with_its_row() {
     for kind in KINDS {
         let made = session(&elbow(), kind, 200, 4);
         let moved = Pose::from_xyz_rpy([2e-3, 1e-3, -2e-3], [3e-4, 0.0, -5e-4]);
-        let data = changed(&made, |row| if row < 100 { Pose::identity() } else { moved });
+        let data = move_device(&made, |row| if row < 100 { Pose::identity() } else { moved });
         let found = fit(&made.nominal, &data);
         let row =
             |it: &String| -> Option<usize> { it.split("from row ").nth(1)?.split(' ').next()?.parse().ok() };
-        let row = found.warnings.iter().find_map(row).unwrap_or_else(|| panic!("{}", said(&found)));
-        assert!((99..=103).contains(&row), "{}", said(&found));
+        let row =
+            found.warnings.iter().find_map(row).unwrap_or_else(|| panic!("{}", describe_findings(&found)));
+        assert!((99..=103).contains(&row), "{}", describe_findings(&found));
         assert_eq!(found.verdict.level, Level::DoNotUse);
     }
 }
 
 /// Rows of two files, the second seen from another pose.
-fn two_files(made: &Simulated, place: Pose, first: usize) -> Dataset {
-    let mut data = changed(made, |row| if row < first { Pose::identity() } else { place });
+fn two_files(made: &SimulationResult, place: Pose, first: usize) -> Dataset {
+    let mut data = move_device(made, |row| if row < first { Pose::identity() } else { place });
     data.files = vec![PathBuf::from("monday.csv"), PathBuf::from("tuesday.csv")];
     for (row, observation) in data.observations.iter_mut().enumerate() {
         observation.source.file = u32::from(row >= first);
@@ -113,18 +114,23 @@ fn files_with_two_device_frames_are_named() {
     let far = Pose::from_xyz_rpy([1.2, -0.7, 0.3], [0.1, 0.2, 2.0]);
     let near = Pose::from_translation(Vector3::new(6e-3, 0.0, 3e-3));
     for kind in KINDS {
-        for (place, count, first) in some([(far, 120, 60), (far, 100, 75), (near, 120, 60), (near, 150, 100)])
+        for (place, count, first) in
+            choose_some([(far, 120, 60), (far, 100, 75), (near, 120, 60), (near, 150, 100)])
         {
             let made = session(&elbow(), kind, count, 5);
             let found = fit(&made.nominal, &two_files(&made, place, first));
             assert!(
                 says(&found, "the files monday.csv and tuesday.csv do not share one device frame"),
                 "{kind:?} {count}: {}",
-                said(&found)
+                describe_findings(&found)
             );
-            assert!(says(&found, "--device-frames per-file"), "{}", said(&found));
-            assert!(!says(&found, "unit of the noise") && !says(&found, "outlier"), "{}", said(&found));
-            assert!(found.diagnosis.is_empty(), "{}", said(&found));
+            assert!(says(&found, "--device-frames per-file"), "{}", describe_findings(&found));
+            assert!(
+                !says(&found, "unit of the noise") && !says(&found, "outlier"),
+                "{}",
+                describe_findings(&found)
+            );
+            assert!(found.diagnosis.is_empty(), "{}", describe_findings(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse);
         }
     }
@@ -134,24 +140,29 @@ fn files_with_two_device_frames_are_named() {
 fn a_device_moved_far_within_a_file_is_named() {
     let far = Pose::from_xyz_rpy([0.5, -0.4, 0.2], [0.1, -0.2, 0.6]);
     for kind in KINDS {
-        for (count, from) in some([(80, 40), (150, 60), (150, 100), (300, 160)]) {
+        for (count, from) in choose_some([(80, 40), (150, 60), (150, 100), (300, 160)]) {
             let made = session(&elbow(), kind, count, 8);
-            let data = changed(&made, |row| if row < from { Pose::identity() } else { far });
+            let data = move_device(&made, |row| if row < from { Pose::identity() } else { far });
             let found = fit(&made.nominal, &data);
             let statement = found.warnings.iter().find(|it| it.contains("are in another device frame"));
-            let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count} {from}: {}", said(&found)));
+            let statement =
+                statement.unwrap_or_else(|| panic!("{kind:?} {count} {from}: {}", describe_findings(&found)));
             let row: usize =
                 statement.split("from row ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
             // First fitted row after the motion.
             assert!((from + 1..from + 8).contains(&row), "{from}: {statement}");
-            assert!(!says(&found, "wrong unit"), "{}", said(&found));
+            assert!(!says(&found, "wrong unit"), "{}", describe_findings(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse);
         }
     }
 }
 
 /// Points of several targets on the arm, in turn.
-fn with_targets(made: &Simulated, names: &[&str], knocked: impl Fn(usize, usize) -> Vector3<f64>) -> Dataset {
+fn with_targets(
+    made: &SimulationResult,
+    names: &[&str],
+    knocked: impl Fn(usize, usize) -> Vector3<f64>,
+) -> Dataset {
     let mut data = made.data.clone();
     data.targets = names.iter().map(|name| Some((*name).to_owned())).collect();
     for (row, observation) in data.observations.iter_mut().enumerate() {
@@ -173,7 +184,7 @@ fn with_targets(made: &Simulated, names: &[&str], knocked: impl Fn(usize, usize)
 #[test]
 fn a_knocked_nest_is_named_with_target_and_row() {
     for kind in KINDS {
-        for (count, share) in some([(90, 0.5), (150, 0.7), (300, 0.3), (300, 0.8)]) {
+        for (count, share) in choose_some([(90, 0.5), (150, 0.7), (300, 0.3), (300, 0.8)]) {
             let made = session(&elbow(), kind, count, 6);
             let from = (count as f64 * share) as usize;
             let knock = Vector3::new(0.48e-3, 0.0, -0.64e-3);
@@ -182,7 +193,8 @@ fn a_knocked_nest_is_named_with_target_and_row() {
             });
             let found = fit(&made.nominal, &data);
             let statement = found.warnings.iter().find(|it| it.contains("target `middle` is shifted"));
-            let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count} {share}: {}", said(&found)));
+            let statement = statement
+                .unwrap_or_else(|| panic!("{kind:?} {count} {share}: {}", describe_findings(&found)));
             let number = |after: &str| -> f64 {
                 statement.split(after).nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
             };
@@ -191,7 +203,7 @@ fn a_knocked_nest_is_named_with_target_and_row() {
             let first = (from..).find(|row| row % 3 == 1).unwrap() + 1;
             assert_eq!(row as usize, first, "{statement}");
             assert!((far - 0.8).abs() < 0.25, "{statement}");
-            assert_eq!(found.verdict.level, Level::DoNotUse, "{}", said(&found));
+            assert_eq!(found.verdict.level, Level::DoNotUse, "{}", describe_findings(&found));
         }
     }
 }
@@ -199,18 +211,19 @@ fn a_knocked_nest_is_named_with_target_and_row() {
 #[test]
 fn a_slow_drift_is_called_a_drift() {
     for kind in KINDS {
-        for (count, seed) in some([(60, 1), (80, 2), (150, 3), (300, 4), (300, 5)]) {
+        for (count, seed) in choose_some([(60, 1), (80, 2), (150, 3), (300, 4), (300, 5)]) {
             let made = session(&elbow(), kind, count, 20 + seed);
             let far = Vector3::new(0.12e-3, 0.0, 0.16e-3);
-            let data = changed(&made, |row| shift(far * (row as f64 / (count - 1) as f64)));
+            let data = move_device(&made, |row| shift(far * (row as f64 / (count - 1) as f64)));
             let found = fit(&made.nominal, &data);
             let statement = found.warnings.iter().find(|it| it.contains("the measurements drift by"));
-            let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count}: {}", said(&found)));
+            let statement =
+                statement.unwrap_or_else(|| panic!("{kind:?} {count}: {}", describe_findings(&found)));
             let size: f64 =
                 statement.split("drift by ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
             assert!((size - 0.2).abs() < 0.06, "{statement}");
-            assert!(!says(&found, "moved"), "{}", said(&found));
-            assert_eq!(found.verdict.level, Level::DoNotUse, "{}", said(&found));
+            assert!(!says(&found, "moved"), "{}", describe_findings(&found));
+            assert_eq!(found.verdict.level, Level::DoNotUse, "{}", describe_findings(&found));
         }
     }
 }
@@ -230,7 +243,7 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
         .into_par_iter()
         .filter_map(|seed| {
             let robot = &robots[seed as usize % robots.len()];
-            let kind = [Kind::POINT, Kind::POSE, Kind::MIXED][seed as usize / 5 % 3];
+            let kind = [SessionKind::POINT, SessionKind::POSE, SessionKind::MIXED][seed as usize / 5 % 3];
             let count = [40, 60, 90, 150, 300][seed as usize / 15 % 5];
             let made = session(robot, kind, count, 100 + seed);
             let data = match seed % 4 {
@@ -239,7 +252,8 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
                 _ => made.data.clone(),
             };
             let found = fit(&made.nominal, &data);
-            is_doubted(&found).then(|| format!("{seed} {} {kind:?} {count}: {}", robot.name, said(&found)))
+            is_doubted(&found)
+                .then(|| format!("{seed} {} {kind:?} {count}: {}", robot.name, describe_findings(&found)))
         })
         .collect();
     assert!(doubted.is_empty(), "{doubted:#?}");
@@ -249,7 +263,7 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
 #[test]
 fn an_orderly_session_of_a_robot_that_gives_is_not_called_a_drift() {
     for seed in 0..6 {
-        let made = session(&elbow(), Kind::POINT, 150, 400 + seed);
+        let made = session(&elbow(), SessionKind::POINT, 150, 400 + seed);
         let mut order: Vec<usize> = (0..made.data.len()).collect();
         order.sort_by(|&a, &b| made.data.readings(a)[0].total_cmp(&made.data.readings(b)[0]));
         let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -261,6 +275,6 @@ fn an_orderly_session_of_a_robot_that_gives_is_not_called_a_drift() {
             data.push(readings, None, Measurement::point(position)).unwrap();
         }
         let found = fit(&made.nominal, &data);
-        assert!(!is_doubted(&found), "{seed}: {}", said(&found));
+        assert!(!is_doubted(&found), "{seed}: {}", describe_findings(&found));
     }
 }

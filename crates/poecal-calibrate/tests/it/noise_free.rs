@@ -2,17 +2,19 @@
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist};
-use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
-use poecal_fit::analysis::{Setup, identifiability};
+use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, nominal_estimate};
+use poecal_fit::analysis::{AnalysisSetup, identifiability};
 use poecal_fit::parameters::{Parameter, ScrewAxis, TargetPlace};
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::Noise;
 use poecal_model::robot::{JointKind, Robot, Sizes};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, gantry, random_chain, scara, seven_axis};
+use poecal_model::simulate::{
+    SessionKind, Simulation, SimulationResult, elbow, gantry, random_chain, scara, seven_axis,
+};
 use poecal_numerics::solve::LeastSquares;
 use poecal_testing::sessions::geometry;
-use poecal_testing::trials::some;
+use poecal_testing::trials::choose_some;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
@@ -31,7 +33,8 @@ const IDENTIFIED: [[f64; 6]; 6] = [
 /// The same table's last row: the point on the tool, m.
 const IDENTIFIED_POINT: [f64; 3] = [0.839_010_0, -0.005_030_0, 0.724_974_0];
 /// Iterations reported by lou2009 are 6 and 10; the step here is the same, in better coordinates.
-const ELBOW_ITERATIONS: [(Kind, usize, usize); 2] = [(Kind::POSE, 30, 5), (Kind::POINT, 100, 7)];
+const ELBOW_ITERATIONS: [(SessionKind, usize, usize); 2] =
+    [(SessionKind::POSE, 30, 5), (SessionKind::POINT, 100, 7)];
 
 /// Exact points of the elbow whose tool is displaced by this across the last axis, on which the nominal one lies: they hardly determine the axis, so
 /// that the prior biases it. lou2009 needs 10 iterations for its points.
@@ -66,15 +69,15 @@ fn actual_elbow() -> Robot {
     robot
 }
 
-fn simulated_elbow(kind: Kind, count: usize) -> Simulated {
+fn simulated_elbow(kind: SessionKind, count: usize) -> SimulationResult {
     let simulation = Simulation { count, device_anywhere: false, ..EXACT };
     simulation.measure(&elbow(), actual_elbow(), kind, &mut ChaCha8Rng::seed_from_u64(7)).unwrap()
 }
 
 /// Structural rank: 4r+2p+6 for poses and 4r+2p+3 for points.
-fn structural_rank(robot: &Robot, kind: Kind) -> usize {
+fn structural_rank(robot: &Robot, kind: SessionKind) -> usize {
     let screws: usize = robot.joints.iter().map(|j| if j.kind == JointKind::Revolute { 4 } else { 2 }).sum();
-    screws + if kind == Kind::POINT { 3 } else { 6 }
+    screws + if kind == SessionKind::POINT { 3 } else { 6 }
 }
 
 fn held_out_m(calibration: &Calibration) -> f64 {
@@ -113,9 +116,9 @@ fn exact_points_of_the_elbow_take_few_iterations_whatever_its_errors() {
     let most = (1..=12).map(|seed| {
         let simulation = Simulation { count: POINTS, device_anywhere: false, seed, ..EXACT };
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        let mut actual = simulation.perturbed(&nominal, &mut generator);
+        let mut actual = simulation.perturb(&nominal, &mut generator);
         actual.home.translation.z += TOOL_ERROR_M;
-        let made = simulation.measure(&nominal, actual, Kind::POINT, &mut generator).unwrap();
+        let made = simulation.measure(&nominal, actual, SessionKind::POINT, &mut generator).unwrap();
         let options =
             CalibrationOptions { frame: DeviceFrameKnowledge::Base, held_out: Some(0.0), ..geometry() };
         let result = calibrate(&made.nominal, &made.data, &options).unwrap();
@@ -135,9 +138,9 @@ fn exact_points_of_the_elbow_take_few_iterations_whatever_its_errors() {
 /// The nominal point lies on nominal axis 6: turning and shifting that axis have the same effect on the point.
 #[test]
 fn elbow_has_rank_25_where_a_fit_of_points_starts() {
-    let made = simulated_elbow(Kind::POINT, 100);
+    let made = simulated_elbow(SessionKind::POINT, 100);
     let robot = &made.nominal;
-    let packed = Packed::new(robot, made.data.all_readings(), robot.joints.len());
+    let packed = PackedValues::new(robot, made.data.all_readings(), robot.joints.len());
     let screws = robot.joints.iter().enumerate();
     let mut free: Vec<Parameter> =
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
@@ -145,8 +148,9 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     let noise = Noise::new(1e-3, 1e-3);
     let session = Session::new(robot, &made.data, &packed, false).with_length(robot.reach_m() / 3.0);
     let problem = Problem::new(session, (0..100).collect(), free, noise);
-    let estimate = delivered(robot, &made.data);
-    let setup = Setup { session, rows: problem.rows(), estimate: &estimate, layout: problem.layout(), noise };
+    let estimate = nominal_estimate(robot, &made.data);
+    let setup =
+        AnalysisSetup { session, rows: problem.rows(), estimate: &estimate, layout: problem.layout(), noise };
     // The residual at the start is not noise: the rank is that of the Jacobian itself.
     let found = identifiability(&setup, &problem.normal(&estimate).gram, 0.0);
     println!("rank {} of {}", found.rank, found.parameters);
@@ -161,11 +165,13 @@ fn robots_of_every_structure_are_recovered_from_anywhere() {
     for joints in 2..=12 {
         robots.extend((0..4).map(|seed| random_chain(joints, seed)));
     }
-    let cases: Vec<(&Robot, Kind)> = robots
+    let cases: Vec<(&Robot, SessionKind)> = robots
         .iter()
-        .flat_map(|robot| [Kind::POSE, Kind::POINT, Kind::MIXED].map(|kind| (robot, kind)))
+        .flat_map(|robot| {
+            [SessionKind::POSE, SessionKind::POINT, SessionKind::MIXED].map(|kind| (robot, kind))
+        })
         .collect();
-    let cases = some(cases);
+    let cases = choose_some(cases);
     let failures: Vec<String> = cases
         .par_iter()
         .filter_map(|&(robot, kind)| {

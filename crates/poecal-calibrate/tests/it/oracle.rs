@@ -4,9 +4,11 @@ use poecal_testing::sessions::geometry;
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use poecal_calibrate::{CalibrationOptions, Level, PredictedUncertainty, Robust, Subject, calibrate, judge};
+use poecal_calibrate::{
+    CalibrationOptions, JudgedCalibration, Level, PredictedUncertainty, RobustLoss, calibrate, judge,
+};
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Quantity};
-use poecal_model::simulate::{Kind, Simulation, elbow, random};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, random};
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -24,44 +26,49 @@ struct Row {
 }
 
 /// One of some values.
-fn one<T: Copy>(generator: &mut ChaCha8Rng, of: &[T]) -> T {
-    of[below(generator, of.len())]
+fn draw_one_of<T: Copy>(generator: &mut ChaCha8Rng, of: &[T]) -> T {
+    of[draw_below(generator, of.len())]
 }
 
-fn below(generator: &mut ChaCha8Rng, count: usize) -> usize {
+fn draw_below(generator: &mut ChaCha8Rng, count: usize) -> usize {
     (generator.next_u64() % count as u64) as usize
 }
 
 /// Effects of the robot that its model does not describe, in all rows, including those that judge.
-fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
-    let kind =
-        one(generator, &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"]);
-    let joint = below(generator, 6);
+fn add_physical_effect(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
+    let kind = draw_one_of(
+        generator,
+        &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"],
+    );
+    let joint = draw_below(generator, 6);
     match kind {
         "gear" => {
-            let factor = 1.0 + one(generator, &[1e-4, 3e-4, 1e-3, 3e-3]);
+            let factor = 1.0 + draw_one_of(generator, &[1e-4, 3e-4, 1e-3, 3e-3]);
             rows.iter_mut().for_each(|row| row.readings[joint] *= factor);
         }
         "ripple" => {
-            let (size, times) =
-                (one(generator, &[0.01f64, 0.03, 0.1]).to_radians(), one(generator, &[1.0, 2.0, 3.0]));
+            let (size, times) = (
+                draw_one_of(generator, &[0.01f64, 0.03, 0.1]).to_radians(),
+                draw_one_of(generator, &[1.0, 2.0, 3.0]),
+            );
             rows.iter_mut().for_each(|row| row.readings[joint] += size * (times * row.readings[joint]).sin());
         }
         "backlash" => {
-            let size = one(generator, &[0.01f64, 0.03, 0.1]).to_radians();
-            rows.iter_mut().for_each(|row| row.readings[joint] += size * one(generator, &[-1.0, 1.0]));
+            let size = draw_one_of(generator, &[0.01f64, 0.03, 0.1]).to_radians();
+            rows.iter_mut()
+                .for_each(|row| row.readings[joint] += size * draw_one_of(generator, &[-1.0, 1.0]));
         }
         "sag" => {
-            let size = one(generator, &[1e-4, 3e-4, 1e-3]);
+            let size = draw_one_of(generator, &[1e-4, 3e-4, 1e-3]);
             let first = rows[0].place;
             rows.iter_mut().for_each(|row| row.place.z -= size * (row.place - first).xy().norm());
         }
         "scale" => {
-            let factor = 1.0 + one(generator, &[1e-5, 1e-4, 1e-3]);
+            let factor = 1.0 + draw_one_of(generator, &[1e-5, 1e-4, 1e-3]);
             rows.iter_mut().for_each(|row| row.place *= factor);
         }
         "rounded" => {
-            let step = one(generator, &[0.01f64, 0.1, 0.5]).to_radians();
+            let step = draw_one_of(generator, &[0.01f64, 0.1, 0.5]).to_radians();
             rows.iter_mut()
                 .flat_map(|row| &mut row.readings)
                 .for_each(|value| *value = (*value / step).round() * step);
@@ -92,31 +99,32 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
         "sign",
         "moved",
     ];
-    let kind = one(generator, &faults);
+    let kind = draw_one_of(generator, &faults);
     let count = rows.len();
-    let (joint, first) = (below(generator, 6), below(generator, count));
-    let last = count.min(first + 2 + below(generator, count / 2 - 2));
+    let (joint, first) = (draw_below(generator, 6), draw_below(generator, count));
+    let last = count.min(first + 2 + draw_below(generator, count / 2 - 2));
     match kind {
         "cell" => {
-            for _ in 0..one(generator, &[1, 3, 10]) {
-                let (row, factor) = (below(generator, count), one(generator, &[1.01, -1.0, 10.0, 0.1]));
-                match below(generator, 9) {
+            for _ in 0..draw_one_of(generator, &[1, 3, 10]) {
+                let (row, factor) =
+                    (draw_below(generator, count), draw_one_of(generator, &[1.01, -1.0, 10.0, 0.1]));
+                match draw_below(generator, 9) {
                     cell @ 0..6 => rows[row].readings[cell] *= factor,
                     cell => rows[row].place[cell - 6] *= factor,
                 }
             }
         }
         "bias" => {
-            let size = one(generator, &[1e-4, 5e-4, 2e-3, 1e-2]);
+            let size = draw_one_of(generator, &[1e-4, 5e-4, 2e-3, 1e-2]);
             rows[first..last].iter_mut().for_each(|row| row.place.x += size);
         }
         "duplicates" => {
-            let times = one(generator, &[2, 5]);
+            let times = draw_one_of(generator, &[2, 5]);
             let some = rows[..(count / times).max(12)].to_vec();
             *rows = (0..times).flat_map(|_| some.clone()).collect();
         }
         "repeats" => {
-            let some = rows[..one(generator, &[10, 15, 20])].to_vec();
+            let some = rows[..draw_one_of(generator, &[10, 15, 20])].to_vec();
             let again = (0..count).map(|k| {
                 let mut row = some[k % some.len()].clone();
                 row.readings.iter_mut().for_each(|value| *value += 8.7e-5 * random::normal(generator));
@@ -127,21 +135,21 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
         }
         "shuffled" => {
             for row in first + 1..last {
-                let other = first + below(generator, row - first + 1);
+                let other = first + draw_below(generator, row - first + 1);
                 let place = rows[row].place;
                 rows[row].place = std::mem::replace(&mut rows[other].place, place);
             }
         }
         "drift" => {
-            let size = one(generator, &[2e-4, 1e-3, 5e-3]);
+            let size = draw_one_of(generator, &[2e-4, 1e-3, 5e-3]);
             rows.iter_mut().enumerate().for_each(|(k, row)| row.place.x += size * k as f64 / count as f64);
         }
         "noise" => {
-            let size = one(generator, &[5e-4, 2e-3]);
+            let size = draw_one_of(generator, &[5e-4, 2e-3]);
             rows[first..last].iter_mut().for_each(|row| row.place += size * random::normal_vector(generator));
         }
         "rounded places" => {
-            let step = one(generator, &[1e-4, 1e-3]);
+            let step = draw_one_of(generator, &[1e-4, 1e-3]);
             rows.iter_mut().for_each(|row| row.place = row.place.map(|value| (value / step).round() * step));
         }
         "half a joint" => {
@@ -153,7 +161,7 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
             let value = rows[first].readings[joint];
             rows[first..last].iter_mut().for_each(|row| row.readings[joint] = value);
         }
-        "few" => rows.truncate(one(generator, &[12, 14, 16, 20, 30])),
+        "few" => rows.truncate(draw_one_of(generator, &[12, 14, 16, 20, 30])),
         "zeros" => rows[first..last.min(first + 10)].iter_mut().for_each(|row| row.place = Vector3::zeros()),
         "columns" => {
             rows[first..last].iter_mut().for_each(|row| row.readings.swap(joint.min(4), joint.min(4) + 1))
@@ -181,28 +189,28 @@ type Outcome = (Level, Option<bool>);
 fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let simulation = Simulation { count: 400, seed: 21 + seed % 7, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::POINT).unwrap();
+    let made = simulation.run(&elbow(), SessionKind::POINT).unwrap();
     let mut rows: Vec<Row> = (0..made.data.len())
         .map(|row| Row {
             readings: made.data.readings(row).to_vec(),
             place: made.data.observations[row].measurement.pose().translation,
         })
         .collect();
-    let robot = physical(&mut rows, &mut generator);
-    let mut fitted = rows[..one(&mut generator, &[40, 60, 100, 200])].to_vec();
+    let robot = add_physical_effect(&mut rows, &mut generator);
+    let mut fitted = rows[..draw_one_of(&mut generator, &[40, 60, 100, 200])].to_vec();
     let wrong = fault(&mut fitted, &mut generator);
     let is_stated = seed.is_multiple_of(2);
     let usual = CalibrationOptions { diagnose: true, move_tip: true, ..geometry() };
-    let options = match below(&mut generator, 4) {
+    let options = match draw_below(&mut generator, 4) {
         0 => CalibrationOptions { held_out: Some(0.0), ..usual },
         1 => CalibrationOptions { held_out: Some(0.5), ..usual },
-        2 => CalibrationOptions { robust: Robust::Off, ..usual },
+        2 => CalibrationOptions { robust: RobustLoss::Off, ..usual },
         _ => usual,
     };
     // A stated noise that is too large or too small is one of the faults.
-    let sigma_m = NOISE_M * one(&mut generator, &[1.0, 1.0, 1.0, 0.2, 5.0]);
+    let sigma_m = NOISE_M * draw_one_of(&mut generator, &[1.0, 1.0, 1.0, 0.2, 5.0]);
     let options = CalibrationOptions {
-        sigma: ByQuantity::default().with(Quantity::Position, is_stated.then_some(sigma_m)),
+        sigma: ByQuantity::default().with_value(Quantity::Position, is_stated.then_some(sigma_m)),
         ..options
     };
     let words = format!("{robot}, {wrong}");
@@ -214,7 +222,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
         targets: &[0],
         coverage: &found.trust.coverage,
     });
-    let subject = Subject {
+    let subject = JudgedCalibration {
         calibrated: &found.robot,
         nominal: &found.nominal,
         base_from_device: found.base_from_device,

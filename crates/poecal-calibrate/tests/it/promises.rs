@@ -3,11 +3,13 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::{Calibration, CalibrationOptions, Level, calibrate};
-use poecal_fit::state::{Chain, Linkage, Packed};
+use poecal_fit::state::{Linkage, PackedValues, RowChain};
 use poecal_fit::uncertainty::Attribution;
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Noise, Quantity};
 use poecal_model::robot::{Joint, Robot};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random, random_configuration};
+use poecal_model::simulate::{
+    SessionKind, Simulation, SimulationResult, elbow, random, random_configuration,
+};
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -23,7 +25,7 @@ const OF_ONE_SESSION: f64 = 0.15;
 const OF_ONE_WIDTH: f64 = 0.4;
 
 /// A session with errors that remain in a nominal model.
-fn session(count: usize, seed: u64, kind: Kind) -> Simulated {
+fn session(count: usize, seed: u64, kind: SessionKind) -> SimulationResult {
     let simulation = Simulation {
         count,
         seed,
@@ -36,18 +38,18 @@ fn session(count: usize, seed: u64, kind: Kind) -> Simulated {
     simulation.run(&elbow(), kind).unwrap()
 }
 
-fn stated() -> CalibrationOptions {
-    CalibrationOptions { sigma: Noise::new(NOISE_M, NOISE_RAD).map(Some), ..everything() }
+fn options_with_noise() -> CalibrationOptions {
+    CalibrationOptions { sigma: Noise::new(NOISE_M, NOISE_RAD).map(Some), ..options_with_all_rows() }
 }
 
-fn everything() -> CalibrationOptions {
+fn options_with_all_rows() -> CalibrationOptions {
     CalibrationOptions { held_out: Some(0.0), ..geometry() }
 }
 
 /// Errors of predictions of the true position with their 95 % bounds, metres; `real` makes the joint values of readings.
-fn judged(
+fn errors_with_bounds(
     found: &Calibration,
-    made: &Simulated,
+    made: &SimulationResult,
     seed: u64,
     real: impl Fn(&[f64]) -> Vec<f64>,
 ) -> Vec<(f64, f64)> {
@@ -56,9 +58,9 @@ fn judged(
     let readings: Vec<f64> =
         (0..PREDICTIONS).flat_map(|_| random_configuration(&made.nominal, &mut generator)).collect();
     let n = made.nominal.joints.len();
-    let packed = Packed::new(&made.nominal, &readings, n);
+    let packed = PackedValues::new(&made.nominal, &readings, n);
     let linkage = Linkage::new(&uncertainty.estimate);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let expected = uncertainty.predictions(&packed, 0).into_iter();
     expected
         .zip(readings.chunks(n))
@@ -82,9 +84,9 @@ fn coverage(errors: &[(f64, f64)]) -> (f64, f64) {
 
 #[test]
 fn bounds_hold_where_nothing_is_unmodelled() {
-    for kind in [Kind::POSE, Kind::POINT] {
+    for kind in [SessionKind::POSE, SessionKind::POINT] {
         for count in [8, 10, 12, 15, 20, 40, 60, 100, 200] {
-            if kind == Kind::POINT && count < 12 {
+            if kind == SessionKind::POINT && count < 12 {
                 continue;
             }
             let sessions = trials(120);
@@ -92,8 +94,8 @@ fn bounds_hold_where_nothing_is_unmodelled() {
                 .into_par_iter()
                 .flat_map_iter(|seed| {
                     let made = session(count, seed, kind);
-                    let found = calibrate(&made.nominal, &made.data, &stated()).unwrap();
-                    judged(&found, &made, seed, <[f64]>::to_vec)
+                    let found = calibrate(&made.nominal, &made.data, &options_with_noise()).unwrap();
+                    errors_with_bounds(&found, &made, seed, <[f64]>::to_vec)
                 })
                 .collect();
             let (inside, wider) = coverage(&errors);
@@ -103,8 +105,8 @@ fn bounds_hold_where_nothing_is_unmodelled() {
                 100.0 * inside,
                 sessions.count
             );
-            assert!(inside >= 0.93 - sessions.more(OF_ONE_SESSION));
-            assert!(count < 60 || wider <= 1.6 + sessions.more(OF_ONE_WIDTH));
+            assert!(inside >= 0.93 - sessions.tolerance_factor(OF_ONE_SESSION));
+            assert!(count < 60 || wider <= 1.6 + sessions.tolerance_factor(OF_ONE_WIDTH));
         }
     }
 }
@@ -123,21 +125,26 @@ fn harmonics(seed: u64, size_rad: f64) -> impl Fn(&[f64]) -> Vec<f64> {
 }
 
 /// The session measured again with the real joint values of `real`.
-fn remeasured(made: &Simulated, kind: Kind, seed: u64, real: &impl Fn(&[f64]) -> Vec<f64>) -> Dataset {
+fn measure_again(
+    made: &SimulationResult,
+    kind: SessionKind,
+    seed: u64,
+    real: &impl Fn(&[f64]) -> Vec<f64>,
+) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x5e);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
         let readings = made.data.readings(row);
         let seen = made.device_from_base * made.actual.forward_kinematics(&real(readings));
-        data.push(readings, None, measured(&seen, kind, &mut generator)).unwrap();
+        data.push(readings, None, draw_measurement(&seen, kind, &mut generator)).unwrap();
     }
     data
 }
 
-fn measured(seen: &Pose, kind: Kind, generator: &mut ChaCha8Rng) -> Measurement {
+fn draw_measurement(seen: &Pose, kind: SessionKind, generator: &mut ChaCha8Rng) -> Measurement {
     let position = seen.translation + random::normal_vector(generator) * NOISE_M;
     let turn = rotation::exp(&(random::normal_vector(generator) * NOISE_RAD));
-    if kind == Kind::POINT {
+    if kind == SessionKind::POINT {
         Measurement::point(position)
     } else {
         Measurement::of_pose(&Pose::new(turn * seen.rotation, position))
@@ -146,17 +153,17 @@ fn measured(seen: &Pose, kind: Kind, generator: &mut ChaCha8Rng) -> Measurement 
 
 #[test]
 fn bounds_hold_with_errors_that_the_model_does_not_describe() {
-    for (options, name) in [(everything(), "not stated"), (stated(), "stated")] {
+    for (options, name) in [(options_with_all_rows(), "not stated"), (options_with_noise(), "stated")] {
         for count in [20, 40, 100, 300] {
             let sessions = trials(60);
             let each: Vec<Vec<(f64, f64)>> = (sessions.seeds())
                 .into_par_iter()
                 .map(|seed| {
-                    let made = session(count, seed, Kind::POSE);
+                    let made = session(count, seed, SessionKind::POSE);
                     let real = harmonics(seed, 2e-4);
-                    let data = remeasured(&made, Kind::POSE, seed, &real);
+                    let data = measure_again(&made, SessionKind::POSE, seed, &real);
                     let found = calibrate(&made.nominal, &data, &options).unwrap();
-                    judged(&found, &made, seed, real)
+                    errors_with_bounds(&found, &made, seed, real)
                 })
                 .collect();
             let (inside, wider) = coverage(&each.concat());
@@ -168,7 +175,7 @@ fn bounds_hold_with_errors_that_the_model_does_not_describe() {
                 100.0 * inside,
                 100.0 * shares[shares.len() / 10]
             );
-            assert!(inside >= 0.85 - sessions.more(OF_ONE_SESSION));
+            assert!(inside >= 0.85 - sessions.tolerance_factor(OF_ONE_SESSION));
         }
     }
 }
@@ -179,7 +186,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
     let (mut seen, mut errors) = (0, Vec::new());
     let (sessions, clean) = (trials(40), trials(100));
     for seed in sessions.seeds() {
-        let made = session(100, seed, Kind::POINT);
+        let made = session(100, seed, SessionKind::POINT);
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xa5);
         let (mut noise, mut data) = (Vector3::zeros(), Dataset::new(made.data.reading_names().to_vec()));
         for row in 0..made.data.len() {
@@ -190,18 +197,18 @@ fn noise_that_is_correlated_in_time_is_seen() {
             data.push(readings, None, Measurement::point(position)).unwrap();
         }
         let options = CalibrationOptions {
-            sigma: ByQuantity::default().with(Quantity::Position, Some(NOISE_M)),
-            ..everything()
+            sigma: ByQuantity::default().with_value(Quantity::Position, Some(NOISE_M)),
+            ..options_with_all_rows()
         };
         let found = calibrate(&made.nominal, &data, &options).unwrap();
         seen += usize::from(found.trust.uncertainty.as_ref().unwrap().discrepancy.lag_one.is_some());
-        errors.extend(judged(&found, &made, seed, <[f64]>::to_vec));
+        errors.extend(errors_with_bounds(&found, &made, seed, <[f64]>::to_vec));
     }
     let false_alarms = (clean.seeds())
         .into_par_iter()
         .filter(|&seed| {
-            let made = session(100, 500 + seed, Kind::POINT);
-            let found = calibrate(&made.nominal, &made.data, &stated()).unwrap();
+            let made = session(100, 500 + seed, SessionKind::POINT);
+            let found = calibrate(&made.nominal, &made.data, &options_with_noise()).unwrap();
             found.trust.uncertainty.unwrap().discrepancy.lag_one.is_some()
         })
         .count();
@@ -212,7 +219,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
         100.0 * inside,
         clean.count
     );
-    assert!(seen == sessions.count && inside > 0.9 - sessions.more(OF_ONE_SESSION));
+    assert!(seen == sessions.count && inside > 0.9 - sessions.tolerance_factor(OF_ONE_SESSION));
     assert!(false_alarms as f64 <= (0.02 + clean.more_of_a_share(0.02)) * clean.count as f64);
 }
 
@@ -222,7 +229,7 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
     let (mut all, mut promised, mut found_squares) = (Vec::new(), 0.0, 0.0);
     let sessions = trials(40);
     for seed in sessions.seeds() {
-        let made = session(14, seed, Kind::POSE);
+        let made = session(14, seed, SessionKind::POSE);
         let real = harmonics(seed, 1e-4);
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -231,11 +238,11 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
             let seen = made.device_from_base * made.actual.forward_kinematics(&real(readings));
             let jitter: Vec<f64> =
                 readings.iter().map(|it| it + 1e-5 * random::normal(&mut generator)).collect();
-            data.push(&jitter, None, measured(&seen, Kind::POSE, &mut generator)).unwrap();
+            data.push(&jitter, None, draw_measurement(&seen, SessionKind::POSE, &mut generator)).unwrap();
         }
-        let found = calibrate(&made.nominal, &data, &everything()).unwrap();
+        let found = calibrate(&made.nominal, &data, &options_with_all_rows()).unwrap();
         promised += found.trust.expected.range.unwrap().sigma_m.powi(2);
-        let errors = judged(&found, &made, seed, real);
+        let errors = errors_with_bounds(&found, &made, seed, real);
         found_squares += errors.iter().map(|(error, _)| error * error).sum::<f64>() / errors.len() as f64;
         all.extend(errors);
     }
@@ -246,23 +253,26 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
         100.0 * inside,
         sessions.count
     );
-    assert!(inside > 0.9 - sessions.more(OF_ONE_SESSION) && ratio < 1.2 + sessions.more(0.3));
+    assert!(
+        inside > 0.9 - sessions.tolerance_factor(OF_ONE_SESSION)
+            && ratio < 1.2 + sessions.tolerance_factor(0.3)
+    );
 }
 
 /// Repeated measurements that scatter as much as the others show that the residuals are noise; without them the residuals count as errors of the
 /// robot.
 #[test]
 fn repeats_show_what_is_noise() {
-    let made = session(40, 3, Kind::POINT);
+    let made = session(40, 3, SessionKind::POINT);
     let whose = |repeats: usize| {
         let mut generator = ChaCha8Rng::seed_from_u64(8);
         let mut data = Dataset::new(made.data.reading_names().to_vec());
         for row in (0..40).flat_map(|row| std::iter::repeat_n(row, repeats)) {
             let readings = made.data.readings(row);
             let seen = made.device_from_base * made.actual.forward_kinematics(readings);
-            data.push(readings, None, measured(&seen, Kind::POINT, &mut generator)).unwrap();
+            data.push(readings, None, draw_measurement(&seen, SessionKind::POINT, &mut generator)).unwrap();
         }
-        let found = calibrate(&made.nominal, &data, &everything()).unwrap();
+        let found = calibrate(&made.nominal, &data, &options_with_all_rows()).unwrap();
         let found = found.trust.uncertainty.unwrap().discrepancy;
         println!(
             "{repeats} times each: {:?}, {:.4} mm the robot's",
@@ -278,7 +288,7 @@ fn repeats_show_what_is_noise() {
 /// Twelve rows, each copied ten times: no error is gross, and the session is not reliable.
 #[test]
 fn copied_rows_are_no_rows() {
-    let made = session(12, 4, Kind::POINT);
+    let made = session(12, 4, SessionKind::POINT);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in (0..12).flat_map(|row| [row; 10]) {
         data.push(made.data.readings(row), None, made.data.observations[row].measurement).unwrap();
@@ -308,8 +318,8 @@ fn joints_of_one_reading_are_drawn_together() {
         noise_rotation_rad: NOISE_RAD,
         ..Simulation::default()
     };
-    let made = simulation.run(&robot, Kind::POSE).unwrap();
-    let found = calibrate(&made.nominal, &made.data, &stated()).unwrap();
+    let made = simulation.run(&robot, SessionKind::POSE).unwrap();
+    let found = calibrate(&made.nominal, &made.data, &options_with_noise()).unwrap();
     let (measured, range) =
         (found.trust.expected.measured.unwrap().sigma_m, found.trust.expected.range.unwrap().sigma_m);
     println!("measured {:.4}, anywhere {:.4} mm", 1e3 * measured, 1e3 * range);
@@ -321,9 +331,9 @@ fn joints_of_one_reading_are_drawn_together() {
 #[test]
 fn absurd_noise_is_never_good() {
     for sigma_m in [0.05, 100.0, 1e-9] {
-        let made = session(80, 1, Kind::POSE);
+        let made = session(80, 1, SessionKind::POSE);
         let options = CalibrationOptions {
-            sigma: ByQuantity::default().with(Quantity::Position, Some(sigma_m)),
+            sigma: ByQuantity::default().with_value(Quantity::Position, Some(sigma_m)),
             ..geometry()
         };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();

@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_arm::lie::Pose;
 use poecal_calibrate::{Calibration, CalibrationOptions, Level, calibrate};
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::Dataset;
-use poecal_model::robot::{Limits, Robot, Sizes};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal_model::robot::{JointLimits, Robot, Sizes};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow};
 use poecal_testing::trials::trials;
 
 /// Part of the warning about a target whose position is undetermined.
@@ -16,7 +16,7 @@ const OPEN: &str = "leave the place of the target on the last link open";
 fn stiff_wrist() -> Robot {
     let mut robot = elbow();
     for joint in &mut robot.joints[3..] {
-        joint.limits = Some(Limits { lower: -0.03, upper: 0.03 });
+        joint.limits = Some(JointLimits { lower: -0.03, upper: 0.03 });
     }
     robot
 }
@@ -26,10 +26,10 @@ fn all_fitted() -> CalibrationOptions {
 }
 
 /// Root mean square error of the delivered and of the located nominal model in configurations of the same kind, metres.
-fn unseen_m(simulation: &Simulation, made: &Simulated, found: &Calibration) -> [f64; 2] {
-    let unseen = simulation.held_out(made, Kind::POINT, 200).unwrap();
+fn unseen_m(simulation: &Simulation, made: &SimulationResult, found: &Calibration) -> [f64; 2] {
+    let unseen = simulation.held_out(made, SessionKind::POINT, 200).unwrap();
     let rms = |robot: &Robot, estimate| {
-        let packed = Packed::from_dataset(robot, &unseen);
+        let packed = PackedValues::from_dataset(robot, &unseen);
         let session = Session::new(robot, &unseen, &packed, true);
         let squares =
             session.errors(&unseen.all_rows(), estimate).into_iter().map(|it| it.position_m().norm_squared());
@@ -57,7 +57,7 @@ fn a_target_that_few_rows_leave_open_stays_at_the_tool() {
             terms: Sizes::COMMON,
             ..Simulation::default()
         };
-        let made = simulation.run(&robot, Kind::POINT).unwrap();
+        let made = simulation.run(&robot, SessionKind::POINT).unwrap();
         let found = calibrate(&made.nominal, &made.data, &all_fitted()).unwrap();
         let target = found.targets[0].tip_from_target.translation.norm();
         assert!(target < 0.1, "seed {seed}: {target} m from the tip");
@@ -72,7 +72,7 @@ fn a_target_that_few_rows_leave_open_stays_at_the_tool() {
 fn a_target_far_from_the_model_is_found_there() {
     for seed in 1..=3 {
         let simulation = Simulation { count: 25, seed, ..Simulation::default() };
-        let mut made = simulation.run(&elbow(), Kind::POINT).unwrap();
+        let mut made = simulation.run(&elbow(), SessionKind::POINT).unwrap();
         // The model lacks a tool of 25 cm.
         made.nominal.home.translation += Vector3::new(0.0, 0.2, 0.15);
         let found = calibrate(&made.nominal, &made.data, &all_fitted()).unwrap();
@@ -108,7 +108,7 @@ fn apart_m(found: &[Vector3<f64>], actual: &[Vector3<f64>], grows: bool) -> f64 
 
 #[test]
 fn what_no_row_sees_is_in_no_bound_of_lengths() {
-    for (kind, grows) in [(Kind::DISTANCE, false), (Kind::SOCKET, true)] {
+    for (kind, grows) in [(SessionKind::DISTANCE, false), (SessionKind::SOCKET, true)] {
         let sessions = trials(40).at_least(6);
         let (mut expected, mut found) = (0.0, 0.0);
         for seed in sessions.seeds() {
@@ -154,7 +154,7 @@ fn few_rows_that_help_are_used() {
     for seed in sessions.seeds() {
         let simulation =
             Simulation { count: 20, seed, error_rotation_rad: 0.3_f64.to_radians(), ..Simulation::default() };
-        let made = simulation.run(&elbow(), Kind::POINT).unwrap();
+        let made = simulation.run(&elbow(), SessionKind::POINT).unwrap();
         let found = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let [delivered, located] = unseen_m(&simulation, &made, &found);
         if delivered < 0.8 * located {

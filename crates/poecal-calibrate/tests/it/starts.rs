@@ -2,11 +2,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_calibrate::delivered;
+use poecal_calibrate::nominal_estimate;
 use poecal_fit::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use poecal_fit::problem::Problem;
 use poecal_fit::start::{Registration, register};
-use poecal_fit::state::{self as estimate, Estimate, Packed};
+use poecal_fit::state::{self as estimate, Estimate, PackedValues};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::{
@@ -47,10 +47,10 @@ const POINTS: &[(Option<&str>, bool)] = &[(Some("a"), false), (Some("b"), false)
 const BOTH: &[(Option<&str>, bool)] = &[(Some("frame"), true), (Some("ball"), false), (Some("other"), true)];
 
 const SESSIONS: [Session; 11] = [
-    Session { name: "poses", targets: POSE, robots: any_robot, configure: anywhere },
-    Session { name: "points", targets: POINT, robots: any_robot, configure: anywhere },
-    Session { name: "three named points", targets: POINTS, robots: any_robot, configure: anywhere },
-    Session { name: "named frames and points", targets: BOTH, robots: any_robot, configure: anywhere },
+    Session { name: "poses", targets: POSE, robots: any_robot, configure: draw_anywhere },
+    Session { name: "points", targets: POINT, robots: any_robot, configure: draw_anywhere },
+    Session { name: "three named points", targets: POINTS, robots: any_robot, configure: draw_anywhere },
+    Session { name: "named frames and points", targets: BOTH, robots: any_robot, configure: draw_anywhere },
     Session {
         name: "poses of one orientation",
         targets: POSE,
@@ -62,7 +62,11 @@ const SESSIONS: [Session; 11] = [
         targets: POSE,
         robots: |_| elbow(),
         configure: |robot, row, generator| {
-            if row % 2 == 0 { one_orientation(robot, generator) } else { anywhere(robot, row, generator) }
+            if row % 2 == 0 {
+                one_orientation(robot, generator)
+            } else {
+                draw_anywhere(robot, row, generator)
+            }
         },
     },
     Session {
@@ -102,15 +106,16 @@ fn any_robot(seed: u64) -> Robot {
     }
 }
 
-fn anywhere(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64> {
+fn draw_anywhere(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64> {
     random_configuration(robot, generator)
 }
 
 /// Within 0.15 rad of one bent configuration: the tip stays in a volume of some 0.3 m.
 fn small_volume(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64> {
     let middle = [0.4, 0.5, -0.6, 0.8, 1.0, -0.5, 0.3];
-    let around =
-        |value: f64, generator: &mut ChaCha8Rng| value + 0.15 * (2.0 * random::uniform(generator) - 1.0);
+    let around = |value: f64, generator: &mut ChaCha8Rng| {
+        value + 0.15 * (2.0 * random::uniform_number(generator) - 1.0)
+    };
     middle.iter().take(robot.joints.len()).map(|&value| around(value, generator)).collect()
 }
 
@@ -137,14 +142,14 @@ fn one_orientation(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
 
 /// Measurements of a robot that differs from its nominal model, with the truth as an estimate of nominal screws.
 fn measure(session: &Session, robot: &Robot, generator: &mut ChaCha8Rng) -> (Dataset, Estimate) {
-    let actual = Simulation::default().perturbed(robot, generator);
+    let actual = Simulation::default().perturb(robot, generator);
     let device_from_base = Pose::new(random::rotation(generator), random::direction(generator) * 3.0);
     let mut data = Dataset::new(robot.reading_names());
     let places: Vec<Pose> = session
         .targets
         .iter()
         .map(|_| {
-            let offset = random::direction(generator) * (OFFSET_M * random::uniform(generator));
+            let offset = random::direction(generator) * (OFFSET_M * random::uniform_number(generator));
             Pose::new(random::rotation(generator), offset)
         })
         .collect();
@@ -186,11 +191,11 @@ fn excess(session: &Session, seed: u64) -> f64 {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let robot = (session.robots)(seed);
     let (data, truth) = measure(session, &robot, &mut generator);
-    let packed = Packed::from_dataset(&robot, &data);
+    let packed = PackedValues::from_dataset(&robot, &data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let session = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
     let problem = Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
-    let (_, cost) = register(&problem, &delivered(&robot, &data));
+    let (_, cost) = register(&problem, &nominal_estimate(&robot, &data));
     cost / cost_from_truth(session, &rows, truth)
 }
 
@@ -226,7 +231,7 @@ fn registration_from_the_truth_is_near_it() {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let robot = (session.robots)(seed);
         let (data, truth) = measure(session, &robot, &mut generator);
-        let packed = Packed::from_dataset(&robot, &data);
+        let packed = PackedValues::from_dataset(&robot, &data);
         let rows: Vec<u32> = (0..ROWS as u32).collect();
         let seen = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
         let cost = cost_from_truth(seen, &rows, truth);

@@ -3,15 +3,17 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_influence};
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::{Dataset, Measurement, Quantity, Set};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, gantry, random, scara, seven_axis};
+use poecal_model::simulate::{
+    SessionKind, Simulation, SimulationResult, elbow, gantry, random, scara, seven_axis,
+};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 
 /// Another pose of the device, in the first one's frame.
-fn moved(station: usize) -> Pose {
+fn station_pose(station: usize) -> Pose {
     Pose::from_xyz_rpy([1.5, -2.0 * station as f64, 0.3], [0.2, -0.1, 1.1 * station as f64])
 }
 
@@ -26,20 +28,20 @@ fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
 }
 
 /// The rows of a session distributed over several stations.
-fn dealt(made: &Simulated, stations: usize) -> Dataset {
+fn deal_out_rows(made: &SimulationResult, stations: usize) -> Dataset {
     let mut data = made.data.clone();
     let parts = data.len().div_ceil(stations);
     data.stations = (0..stations).map(|station| Some(format!("tracker {station}"))).collect();
     for (row, observation) in data.observations.iter_mut().enumerate() {
         observation.station = row / parts;
         if observation.station > 0 {
-            observation.measurement = seen_from(&moved(observation.station), &observation.measurement);
+            observation.measurement = seen_from(&station_pose(observation.station), &observation.measurement);
         }
     }
     data
 }
 
-fn session(robot: &Robot, kind: Kind, count: usize, seed: u64) -> (Simulation, Simulated) {
+fn session(robot: &Robot, kind: SessionKind, count: usize, seed: u64) -> (Simulation, SimulationResult) {
     let simulation = Simulation { count, seed, ..Simulation::default() };
     (simulation, simulation.run(robot, kind).unwrap())
 }
@@ -49,9 +51,14 @@ fn fit(robot: &Robot, data: &Dataset) -> Calibration {
 }
 
 /// Root mean square distance from the truth in configurations that no fit saw, metres, in the first station's frame.
-fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: &Calibration) -> f64 {
+fn unseen_m(
+    simulation: &Simulation,
+    made: &SimulationResult,
+    kind: SessionKind,
+    calibration: &Calibration,
+) -> f64 {
     let unseen = simulation.held_out(made, kind, 300).unwrap();
-    let packed = Packed::from_dataset(&made.nominal, &unseen);
+    let packed = PackedValues::from_dataset(&made.nominal, &unseen);
     let session = Session::new(&made.nominal, &unseen, &packed, true);
     let errors = session.errors(&unseen.all_rows(), &calibration.models.calibrated);
     (errors.iter().map(|error| error.position_m().norm_squared()).sum::<f64>() / 300.0).sqrt()
@@ -59,19 +66,22 @@ fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: 
 
 #[test]
 fn several_places_calibrate_as_one_does() {
-    for (robot, kind) in
-        [(elbow(), Kind::POINT), (elbow(), Kind::POSE), (scara(), Kind::POSE), (seven_axis(), Kind::MIXED)]
-    {
+    for (robot, kind) in [
+        (elbow(), SessionKind::POINT),
+        (elbow(), SessionKind::POSE),
+        (scara(), SessionKind::POSE),
+        (seven_axis(), SessionKind::MIXED),
+    ] {
         let (mut one, mut two) = (0.0_f64, 0.0);
         for seed in 1..=4 {
             let (simulation, made) = session(&robot, kind, 120, seed);
             let alone = fit(&robot, &made.data);
-            let found = fit(&robot, &dealt(&made, 2));
+            let found = fit(&robot, &deal_out_rows(&made, 2));
             one += unseen_m(&simulation, &made, kind, &alone).powi(2);
             two += unseen_m(&simulation, &made, kind, &found).powi(2);
             assert_eq!(found.stations.len(), 2);
             let apart = found.stations[1].base_from_device.inverse() * found.stations[0].base_from_device;
-            let off = apart.inverse() * moved(1);
+            let off = apart.inverse() * station_pose(1);
             let angle = rotation::log(&off.rotation).norm();
             assert!(
                 off.translation.norm() < 1e-3 && angle < 1e-3,
@@ -95,7 +105,7 @@ fn several_places_calibrate_as_one_does() {
 #[test]
 fn exact_measurements_from_three_places_leave_nothing() {
     for robot in [elbow(), scara(), gantry()] {
-        for kind in [Kind::POSE, Kind::POINT] {
+        for kind in [SessionKind::POSE, SessionKind::POINT] {
             let exact = Simulation {
                 count: 90,
                 noise_position_m: 0.0,
@@ -103,7 +113,7 @@ fn exact_measurements_from_three_places_leave_nothing() {
                 ..Simulation::default()
             };
             let made = exact.run(&robot, kind).unwrap();
-            let found = fit(&robot, &dealt(&made, 3));
+            let found = fit(&robot, &deal_out_rows(&made, 3));
             let worst = found.accuracy.training.calibrated.position_mm().max;
             println!("{} {kind:?}: {worst:.1e} mm", robot.name);
             assert!(worst < 1e-6, "{worst}");
@@ -114,14 +124,14 @@ fn exact_measurements_from_three_places_leave_nothing() {
 #[test]
 fn each_further_place_adds_six_to_the_rank() {
     for (robot, kind, plain) in [
-        (elbow(), Kind::POINT, 27),
-        (elbow(), Kind::POSE, 30),
-        (scara(), Kind::POSE, 20),
-        (gantry(), Kind::POSE, 24),
+        (elbow(), SessionKind::POINT, 27),
+        (elbow(), SessionKind::POSE, 30),
+        (scara(), SessionKind::POSE, 20),
+        (gantry(), SessionKind::POSE, 24),
     ] {
         let (_, made) = session(&robot, kind, 90, 2);
         for stations in 1..=3 {
-            let data = dealt(&made, stations);
+            let data = deal_out_rows(&made, stations);
             let found = fit(&robot, &data);
             let expected = plain + 6 * (stations - 1);
             assert_eq!(found.identifiability.parameters, expected);
@@ -138,17 +148,17 @@ fn each_further_place_adds_six_to_the_rank() {
 #[test]
 fn a_target_that_only_one_place_saw_is_found_too() {
     let robot = elbow();
-    let (_, made) = session(&robot, Kind::POINT, 120, 3);
-    let mut data = dealt(&made, 2);
+    let (_, made) = session(&robot, SessionKind::POINT, 120, 3);
+    let mut data = deal_out_rows(&made, 2);
     data.targets = vec![Some("a".into()), Some("b".into()), Some("c".into())];
     for (row, observation) in data.observations.iter_mut().enumerate() {
         observation.target = [row % 2, 1 + row % 2][observation.station];
         let shift = Vector3::new(0.05, 0.02, -0.03) * observation.target as f64;
         let tip = made.device_from_base * made.actual.forward_kinematics(made.data.readings(row));
         let by = tip.rotation * shift;
-        let by = if observation.station == 0 { by } else { moved(1).rotation * by };
+        let by = if observation.station == 0 { by } else { station_pose(1).rotation * by };
         let shifted = |pose: Pose| Pose::new(pose.rotation, pose.translation + by);
-        observation.measurement = observation.measurement.changed(shifted).unwrap();
+        observation.measurement = observation.measurement.map_pose(shifted).unwrap();
     }
     let found = fit(&robot, &data);
     assert_eq!(found.identifiability.rank, 24 + 9 + 6);
@@ -162,8 +172,8 @@ fn refusal(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Strin
 #[test]
 fn places_that_cannot_be_found_are_refused() {
     let robot = elbow();
-    let (_, made) = session(&robot, Kind::POINT, 60, 1);
-    let data = dealt(&made, 2);
+    let (_, made) = session(&robot, SessionKind::POINT, 60, 1);
+    let data = deal_out_rows(&made, 2);
     let base = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
     assert_eq!(
         refusal(&robot, &data, &base),
@@ -184,8 +194,8 @@ fn places_that_cannot_be_found_are_refused() {
 #[test]
 fn the_frame_of_a_held_out_place_is_found_from_its_own_rows() {
     let robot = elbow();
-    let (simulation, made) = session(&robot, Kind::POINT, 120, 1);
-    let mut data = dealt(&made, 2);
+    let (simulation, made) = session(&robot, SessionKind::POINT, 120, 1);
+    let mut data = deal_out_rows(&made, 2);
     for observation in &mut data.observations {
         observation.set = Some(if observation.station == 0 { Set::Fit } else { Set::HeldOut });
     }
@@ -201,9 +211,9 @@ fn the_frame_of_a_held_out_place_is_found_from_its_own_rows() {
 #[test]
 fn mistakes_are_named_whatever_place_they_were_seen_from() {
     let robot = elbow();
-    let (_, made) = session(&robot, Kind::POSE, 80, 1);
+    let (_, made) = session(&robot, SessionKind::POSE, 80, 1);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
-    let two = dealt(&made, 2);
+    let two = deal_out_rows(&made, 2);
     for row in 0..two.len() {
         let mut readings = two.readings(row).to_vec();
         readings[2] = -readings[2];
@@ -221,8 +231,8 @@ fn mistakes_are_named_whatever_place_they_were_seen_from() {
 #[test]
 fn the_noise_of_each_instrument_is_found() {
     let robot = elbow();
-    let (simulation, made) = session(&robot, Kind::POSE, 240, 5);
-    let mut data = dealt(&made, 2);
+    let (simulation, made) = session(&robot, SessionKind::POSE, 240, 5);
+    let mut data = deal_out_rows(&made, 2);
     let mut generator = ChaCha8Rng::seed_from_u64(3);
     // The second one is ten times noisier in position, three times in rotation.
     let [position_m, rotation_rad] =
@@ -244,10 +254,10 @@ fn the_noise_of_each_instrument_is_found() {
     }
     assert!((first[Quantity::Position] / simulation.noise_position_m).ln().abs() < 0.15);
     // With one noise for both, the better instrument has hardly any weight.
-    let unseen = unseen_m(&simulation, &made, Kind::POSE, &found);
+    let unseen = unseen_m(&simulation, &made, SessionKind::POSE, &found);
     let mut stated = data.clone();
     stated.observations.iter_mut().for_each(|row| row.stated.set(Quantity::Position, Some(0.36e-3)));
-    let together = unseen_m(&simulation, &made, Kind::POSE, &fit(&made.nominal, &stated));
+    let together = unseen_m(&simulation, &made, SessionKind::POSE, &fit(&made.nominal, &stated));
     println!("unseen {:.4} mm, with one noise for both {:.4} mm", 1e3 * unseen, 1e3 * together);
     assert!(unseen < 0.5 * together);
 }

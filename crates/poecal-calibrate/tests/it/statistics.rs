@@ -5,10 +5,10 @@ use poecal_arm::lie::rotation;
 use poecal_calibrate::{CalibrationOptions, calibrate};
 use poecal_fit::parameters::{Parameter, ScrewAxis, TargetFrame, TargetPlace};
 use poecal_fit::problem::{Layout, Problem};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session};
 use poecal_model::measurement::{Dataset, Noise, Quantity};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random_configuration};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, random_configuration};
 use poecal_numerics::solve::LeastSquares;
 use poecal_testing::trials::{Trials, trials};
 use rand_chacha::ChaCha8Rng;
@@ -31,11 +31,11 @@ const LENGTH_M: f64 = 0.5;
 type Squares = (f64, f64);
 
 /// All screws and the target; the device's frame is redundant with them.
-fn parameters(robot: &Robot, kind: Kind) -> Vec<Parameter> {
+fn parameters(robot: &Robot, kind: SessionKind) -> Vec<Parameter> {
     let screws = robot.joints.iter().enumerate();
     let mut free: Vec<Parameter> =
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
-    free.push(if kind == Kind::POINT {
+    free.push(if kind == SessionKind::POINT {
         Parameter::TargetPlace(TargetPlace { target: 0 })
     } else {
         Parameter::TargetFrame(TargetFrame::new(0))
@@ -44,15 +44,21 @@ fn parameters(robot: &Robot, kind: Kind) -> Vec<Parameter> {
 }
 
 /// The least mean squares of prediction errors that any unbiased estimator can have: `tr(J_h N⁻¹ J_hᵀ)` at the truth.
-fn bound(truth: &Estimate, data: &Dataset, unseen: &Packed, robot: &Robot, kind: Kind) -> Squares {
-    let packed = Packed::new(robot, data.all_readings(), robot.joints.len());
+fn bound(
+    truth: &Estimate,
+    data: &Dataset,
+    unseen: &PackedValues,
+    robot: &Robot,
+    kind: SessionKind,
+) -> Squares {
+    let packed = PackedValues::new(robot, data.all_readings(), robot.joints.len());
     let session = Session::new(robot, data, &packed, false).with_length(LENGTH_M);
     let rows = (0..FITTED as u32).collect();
     let problem = Problem::new(session, rows, parameters(robot, kind), NOISE);
     let (n, gram) = (problem.dim(), problem.normal(truth).gram);
     let information = DMatrix::from_fn(n, n, |i, j| gram[i.min(j) * n + i.max(j)]);
     let covariance = information.cholesky().unwrap().inverse();
-    let (linkage, mut chain) = (Linkage::new(truth), Chain::default());
+    let (linkage, mut chain) = (Linkage::new(truth), RowChain::default());
     let mut sums = (0.0, 0.0);
     for row in 0..unseen.rows() {
         chain.evaluate(&linkage, unseen, row, 0);
@@ -65,7 +71,7 @@ fn bound(truth: &Estimate, data: &Dataset, unseen: &Packed, robot: &Robot, kind:
 }
 
 /// Derivatives of the target's position and orientation by all unknowns: three rows each.
-fn sensitivities(layout: &Layout, chain: &Chain) -> ([DVector<f64>; 3], [DVector<f64>; 3]) {
+fn sensitivities(layout: &Layout, chain: &RowChain) -> ([DVector<f64>; 3], [DVector<f64>; 3]) {
     let zero = || std::array::from_fn(|_| DVector::zeros(layout.dim()));
     let (mut shift, mut turn): ([DVector<f64>; 3], [DVector<f64>; 3]) = (zero(), zero());
     for (parameter, places) in layout.parameters() {
@@ -82,9 +88,9 @@ fn sensitivities(layout: &Layout, chain: &Chain) -> ([DVector<f64>; 3], [DVector
 }
 
 /// Mean squared difference of two models' predictions in the device's frame.
-fn difference(a: &Estimate, b: &Estimate, unseen: &Packed) -> Squares {
+fn difference(a: &Estimate, b: &Estimate, unseen: &PackedValues) -> Squares {
     let (a, b) = (Linkage::new(a), Linkage::new(b));
-    let (mut at_a, mut at_b) = (Chain::default(), Chain::default());
+    let (mut at_a, mut at_b) = (RowChain::default(), RowChain::default());
     let mut sums = (0.0, 0.0);
     for row in 0..unseen.rows() {
         at_a.evaluate(&a, unseen, row, 0);
@@ -97,12 +103,12 @@ fn difference(a: &Estimate, b: &Estimate, unseen: &Packed) -> Squares {
     sums
 }
 
-fn truth(made: &Simulated) -> Estimate {
+fn truth(made: &SimulationResult) -> Estimate {
     Estimate::new(&made.actual, vec![made.actual.home], made.device_from_base)
 }
 
 /// One calibration with default settings, and its Cramér-Rao bound.
-fn run(kind: Kind, seed: u64) -> (Squares, Squares) {
+fn run(kind: SessionKind, seed: u64) -> (Squares, Squares) {
     let simulation = Simulation {
         noise_position_m: NOISE[Quantity::Position],
         noise_rotation_rad: NOISE[Quantity::Rotation],
@@ -116,7 +122,7 @@ fn run(kind: Kind, seed: u64) -> (Squares, Squares) {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xabcd);
     let readings: Vec<f64> =
         (0..PREDICTED).flat_map(|_| random_configuration(&made.nominal, &mut generator)).collect();
-    let unseen = Packed::new(&made.nominal, &readings, made.nominal.joints.len());
+    let unseen = PackedValues::new(&made.nominal, &readings, made.nominal.joints.len());
     let truth = truth(&made);
     (
         difference(&result.models.calibrated, &truth, &unseen),
@@ -133,11 +139,11 @@ fn judge(what: &str, runs: Trials, found: f64, allowed: f64) {
         allowed.sqrt() * 1e6,
         runs.count
     );
-    assert!((ratio - 1.0).abs() < TOLERANCE + runs.more(OF_ONE_RUN));
+    assert!((ratio - 1.0).abs() < TOLERANCE + runs.tolerance_factor(OF_ONE_RUN));
 }
 
 /// Mean squared errors over all runs, and mean bounds.
-fn runs(kind: Kind) -> (Trials, Squares, Squares) {
+fn runs(kind: SessionKind) -> (Trials, Squares, Squares) {
     let runs = trials(RUNS);
     let all: Vec<(Squares, Squares)> = runs.seeds().into_par_iter().map(|seed| run(kind, seed)).collect();
     let mean = |value: fn(&(Squares, Squares)) -> f64| all.iter().map(value).sum::<f64>() / runs.count as f64;
@@ -148,7 +154,7 @@ fn runs(kind: Kind) -> (Trials, Squares, Squares) {
 
 #[test]
 fn errors_of_pose_calibrations_are_at_the_bound() {
-    let (runs, found, allowed) = runs(Kind::POSE);
+    let (runs, found, allowed) = runs(SessionKind::POSE);
     judge("poses, position (µm)", runs, found.0, allowed.0);
     judge("poses, rotation (µrad)", runs, found.1, allowed.1);
 }
@@ -156,13 +162,13 @@ fn errors_of_pose_calibrations_are_at_the_bound() {
 /// Points do not determine the target's orientation: positions alone are judged.
 #[test]
 fn errors_of_point_calibrations_are_at_the_bound() {
-    let (runs, found, allowed) = runs(Kind::POINT);
+    let (runs, found, allowed) = runs(SessionKind::POINT);
     judge("points, position (µm)", runs, found.0, allowed.0);
 }
 
 #[test]
 fn errors_of_mixed_calibrations_are_at_the_bound() {
-    let (runs, found, allowed) = runs(Kind::MIXED);
+    let (runs, found, allowed) = runs(SessionKind::MIXED);
     judge("mixed, position (µm)", runs, found.0, allowed.0);
     judge("mixed, rotation (µrad)", runs, found.1, allowed.1);
 }

@@ -7,7 +7,7 @@ use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::{JointKind, Robot, Sizes};
 use poecal_model::simulate::{
-    Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
+    SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
 };
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 const NOISE_M: f64 = 5e-5;
 
 /// The suspicious joints with the words about them.
-fn named(robot: &Robot, data: &Dataset) -> Vec<(usize, String)> {
+fn name_suspects(robot: &Robot, data: &Dataset) -> Vec<(usize, String)> {
     let found = calibrate(robot, data, &geometry()).unwrap();
     let joints = found.trust.joints.into_iter().enumerate();
     joints.filter_map(|(joint, it)| Some((joint, it.suspicious?))).collect()
@@ -29,7 +29,7 @@ fn named(robot: &Robot, data: &Dataset) -> Vec<(usize, String)> {
 fn with_bad_transmission(robot: &Robot, joint: usize, amplitude: f64, seed: u64) -> Dataset {
     let simulation = Simulation { seed, ..Simulation::default() };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let actual = simulation.perturbed(robot, &mut generator);
+    let actual = simulation.perturb(robot, &mut generator);
     let mut data = Dataset::new(robot.reading_names());
     for _ in 0..200 {
         let readings = random_configuration(robot, &mut generator);
@@ -58,7 +58,9 @@ fn a_bad_transmission_is_named() {
             };
             let found: Vec<_> = (seeds.clone())
                 .into_par_iter()
-                .map(|seed| named(&robot, &with_bad_transmission(&robot, joint, amplitude, 40 + seed)))
+                .map(|seed| {
+                    name_suspects(&robot, &with_bad_transmission(&robot, joint, amplitude, 40 + seed))
+                })
                 .collect();
             let hits = found.iter().filter(|it| {
                 it.iter().any(|(named, words)| *named == joint && words.contains("follow its position"))
@@ -86,7 +88,7 @@ fn an_axis_that_stands_out_is_named() {
                 ..Simulation::default()
             };
             let mut generator = ChaCha8Rng::seed_from_u64(simulation.seed);
-            let mut actual = simulation.perturbed(&robot, &mut generator);
+            let mut actual = simulation.perturb(&robot, &mut generator);
             let origin = robot.joints[joint].frame.translation;
             let z = robot.joints[joint].screw.direction();
             let across = z.cross(&random::direction(&mut generator)).normalize();
@@ -94,10 +96,10 @@ fn an_axis_that_stands_out_is_named() {
             let shift = z.cross(&across) * 8e-3;
             let motion = Pose::new(turn, origin + shift - turn * origin);
             let mut screws: Vec<_> = actual.joints.iter().map(|joint| joint.screw).collect();
-            screws[joint] = screws[joint].transformed(&motion);
+            screws[joint] = screws[joint].transform(&motion);
             actual = actual.with_screws(&screws);
-            let made = simulation.measure(&robot, actual, Kind::POSE, &mut generator).unwrap();
-            let found = named(&made.nominal, &made.data);
+            let made = simulation.measure(&robot, actual, SessionKind::POSE, &mut generator).unwrap();
+            let found = name_suspects(&made.nominal, &made.data);
             println!("{:12} {:12} {found:?}", robot.name, robot.joints[joint].name);
             right += usize::from(found.iter().any(|(named, _)| *named == joint));
             others += found.iter().filter(|(named, _)| *named != joint).count();
@@ -124,7 +126,7 @@ const AXIS_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 /// A session of a robot with a fault of some size, usual errors of all axes, compliant joints, and a device anywhere.
 fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xfa_017);
-    let sign = if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
+    let sign = if random::uniform_number(&mut generator) < 0.5 { -1.0 } else { 1.0 };
     let actual = match fault {
         Fault::Nothing => robot.clone(),
         Fault::Zero(joint) => {
@@ -138,7 +140,7 @@ fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
             let across = z.cross(&random::direction(&mut generator)).normalize();
             let turn = rotation::exp(&(across * AXIS_RAD));
             let mut screws: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
-            screws[joint] = screws[joint].transformed(&Pose::new(turn, origin - turn * origin));
+            screws[joint] = screws[joint].transform(&Pose::new(turn, origin - turn * origin));
             robot.with_screws(&screws)
         }
     };
@@ -151,7 +153,7 @@ fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
         seed,
         ..Simulation::default()
     };
-    let kind = if (seed / 8).is_multiple_of(2) { Kind::POSE } else { Kind::POINT };
+    let kind = if (seed / 8).is_multiple_of(2) { SessionKind::POSE } else { SessionKind::POINT };
     simulation.run(&actual, kind).unwrap().data
 }
 
@@ -217,9 +219,9 @@ fn sound_robots_are_not_suspected() {
         .into_par_iter()
         .map(|seed| {
             let simulation = Simulation { seed: 900 + seed, count: 60, ..Simulation::default() };
-            let kind = if seed % 2 == 0 { Kind::POSE } else { Kind::POINT };
+            let kind = if seed % 2 == 0 { SessionKind::POSE } else { SessionKind::POINT };
             let made = simulation.run(&robots[seed as usize / 2 % 4], kind).unwrap();
-            named(&made.nominal, &made.data).len()
+            name_suspects(&made.nominal, &made.data).len()
         })
         .sum();
     println!("{false_alarms} false alarms on {} sound robots", sessions.count);

@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::rotation;
 use poecal_calibrate::{CalibrationOptions, JointCorrection, calibrate};
-use poecal_fit::state::{Chain, Linkage, Packed};
+use poecal_fit::state::{Linkage, PackedValues, RowChain};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::{Robot, Tolerance};
 use poecal_model::simulate::{
-    Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
+    SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
 };
 use poecal_testing::sessions::{geometry, with_threads};
 use poecal_testing::trials::trials;
@@ -35,7 +35,7 @@ struct Tally {
     claimed: bool,
 }
 
-fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
+fn tally_session(robot: &Robot, kind: SessionKind, seed: u64) -> Tally {
     let made = Simulation { count: 70, seed, ..Simulation::default() }.run(robot, kind).unwrap();
     let simulated = Simulation::default();
     // Nothing is unmodelled: the noise is stated, and there is no prior.
@@ -50,9 +50,9 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x7a11);
     let readings: Vec<f64> =
         (0..PREDICTIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
-    let packed = Packed::new(robot, &readings, robot.joints.len());
+    let packed = PackedValues::new(robot, &readings, robot.joints.len());
     let linkage = Linkage::new(&uncertainty.estimate);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let mut tally = Tally {
         claimed: uncertainty.discrepancy.scatter > 1.0
             || uncertainty.discrepancy.standard_deviation[poecal_model::measurement::Quantity::Position]
@@ -71,7 +71,7 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
             }
         };
         judge(&shift, &expected.position);
-        if kind == Kind::POSE {
+        if kind == SessionKind::POSE {
             let turn = rotation::log(&(truth.rotation * chain.target.rotation.transpose()));
             judge(&turn, &expected.rotation);
         }
@@ -89,9 +89,9 @@ fn stated_intervals_hold() {
     let (mut all, mut fits, mut claims) = (Tally::default(), 0, 0);
     let each = trials.count.div_ceil(8) as u64;
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
-        for kind in [Kind::POSE, Kind::POINT] {
+        for kind in [SessionKind::POSE, SessionKind::POINT] {
             let tallies: Vec<Tally> =
-                (0..each).into_par_iter().map(|seed| one(&robot, kind, 1000 + seed)).collect();
+                (0..each).into_par_iter().map(|seed| tally_session(&robot, kind, 1000 + seed)).collect();
             let sum = |of: fn(&Tally) -> usize| tallies.iter().map(of).sum::<usize>();
             let (inside, of) = (sum(|it| it.inside), sum(|it| it.of));
             let nees = tallies.iter().map(|it| it.nees).sum::<f64>() / each as f64;
@@ -118,7 +118,7 @@ fn stated_intervals_hold() {
         "{fits} fits: {components:.4}, {distances:.4}, NEES {nees:.3}, {claims} with errors beyond noise"
     );
     // Errors of predictions of one fit are correlated: its share is 1 for most fits, and small for some.
-    let near = 0.02 + trials.more(0.1);
+    let near = 0.02 + trials.tolerance_factor(0.1);
     assert!((components - 0.95).abs() < near && (distances - 0.95).abs() < near);
     // The 95 % band of the mean of `fits` values of χ² with 3 degrees of freedom.
     assert!((nees - 3.0).abs() < 1.96 * (6.0 / fits as f64).sqrt());
@@ -127,7 +127,7 @@ fn stated_intervals_hold() {
 
 #[test]
 fn same_bytes_whatever_the_threads() {
-    let made = Simulation { count: 2500, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
+    let made = Simulation { count: 2500, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
     let once = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let again = with_threads(1, || calibrate(&made.nominal, &made.data, &geometry())).unwrap();
     assert!(format!("{:?}", once.trust) == format!("{:?}", again.trust));
@@ -142,7 +142,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
     let sessions = trials(40);
     for seed in sessions.seeds() {
         let simulation = Simulation { count: 300, seed, device_anywhere: false, ..Simulation::default() };
-        let made = simulation.run(&robot, Kind::POINT).unwrap();
+        let made = simulation.run(&robot, SessionKind::POINT).unwrap();
         let sag = |readings: &[f64]| {
             let reach = readings[1].cos() * 0.57 + (readings[1] - readings[2]).sin() * 0.63;
             Vector3::new(0.0, 0.0, -8e-4 * reach * reach.abs())
@@ -159,9 +159,9 @@ fn errors_that_the_model_does_not_describe_are_stated() {
         let uncertainty = found.trust.uncertainty.unwrap();
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x7a12);
         let readings: Vec<f64> = (0..50).flat_map(|_| random_configuration(&robot, &mut generator)).collect();
-        let packed = Packed::new(&robot, &readings, 6);
+        let packed = PackedValues::new(&robot, &readings, 6);
         let linkage = Linkage::new(&uncertainty.estimate);
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         for (row, expected) in uncertainty.predictions(&packed, 0).into_iter().enumerate() {
             chain.evaluate(&linkage, &packed, row, 0);
             let values = &readings[6 * row..6 * row + 6];
@@ -176,7 +176,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
         100.0 * share,
         sessions.count
     );
-    assert!(share > 0.9 - sessions.more(0.1));
+    assert!(share > 0.9 - sessions.tolerance_factor(0.1));
 }
 
 /// Resampled noise spreads predictions as the covariance states: the samples use neither its variance nor the equality of rows.
@@ -186,8 +186,9 @@ fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
     let sessions = trials(10);
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
         for seed in sessions.seeds() {
-            let made =
-                Simulation { count: 200, seed, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap();
+            let made = Simulation { count: 200, seed, ..Simulation::default() }
+                .run(&robot, SessionKind::POINT)
+                .unwrap();
             let found = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
             let bootstrap = found.trust.bootstrap.unwrap();
             ratios.push(bootstrap.sigma_m / bootstrap.formal_sigma_m);
@@ -206,7 +207,7 @@ fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
 fn drawing_rows_anew_sees_what_neighbours_share() {
     let robot = elbow();
     let mut generator = ChaCha8Rng::seed_from_u64(5);
-    let actual = Simulation::default().perturbed(&robot, &mut generator);
+    let actual = Simulation::default().perturb(&robot, &mut generator);
     let mut data = poecal_model::measurement::Dataset::new(robot.reading_names());
     for _ in 0..60 {
         let near = random_configuration(&robot, &mut generator);
@@ -244,12 +245,13 @@ fn least_shares(robot: &Robot, data: &Dataset, tolerance: Option<Tolerance>) -> 
 #[test]
 fn what_the_data_said_and_what_the_tolerance_said_are_told_apart() {
     let tolerance = |angle_rad, length_m| Some(Tolerance { angle_rad, length_m });
-    let points = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let points = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let of = |data: &Dataset, tolerance| least_shares(&points.nominal, data, tolerance);
     let (usual, tight) =
         (of(&points.data, Tolerance::default().into()), of(&points.data, tolerance(1e-7, 1e-7)));
     let none = of(&points.data, None);
-    let planes = Simulation { count: 120, ..Simulation::default() }.run(&elbow(), Kind::PLANE).unwrap();
+    let planes =
+        Simulation { count: 120, ..Simulation::default() }.run(&elbow(), SessionKind::PLANE).unwrap();
     let touched = of(&planes.data, Tolerance::default().into());
     println!("poses: {usual:?}, tight {tight:?}, none {none:?}; touched planes {touched:?}");
     assert!(usual.iter().all(|share| share.unwrap() > 0.99));

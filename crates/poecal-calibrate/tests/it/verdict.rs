@@ -6,18 +6,20 @@ use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, Le
 use poecal_fit::forensics::DiagnosisKind;
 use poecal_model::measurement::{Dataset, Measurement, Noise, Set};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Gross, Kind, Simulated, Simulation, elbow, scara, seven_axis};
-use poecal_testing::sessions::{calibrated as fit, geometry, simulated};
-use poecal_testing::trials::{some, trials};
+use poecal_model::simulate::{
+    GrossErrors, SessionKind, Simulation, SimulationResult, elbow, scara, seven_axis,
+};
+use poecal_testing::sessions::{calibrate_session as fit, geometry, simulate_session};
+use poecal_testing::trials::{choose_some, trials};
 use rayon::prelude::*;
 
-fn session(count: usize, seed: u64) -> Simulated {
-    simulated(&elbow(), Kind::POSE, count, seed)
+fn session(count: usize, seed: u64) -> SimulationResult {
+    simulate_session(&elbow(), SessionKind::POSE, count, seed)
 }
 
 /// The same poses, moved and read as these functions state.
-fn changed(
-    made: &Simulated,
+fn change_session(
+    made: &SimulationResult,
     shift: impl Fn(usize) -> Vector3<f64>,
     reading: impl Fn(usize, &mut Vec<f64>),
 ) -> Dataset {
@@ -44,7 +46,7 @@ fn sound_sessions_are_good_and_without_a_warning() {
         .into_par_iter()
         .flat_map_iter(|seed| {
             let simulation = Simulation { count: 80, seed: 300 + seed, ..Simulation::default() };
-            let kind = if seed % 2 == 0 { Kind::POSE } else { Kind::POINT };
+            let kind = if seed % 2 == 0 { SessionKind::POSE } else { SessionKind::POINT };
             let made = simulation.run(&robots[seed as usize % 3], kind).unwrap();
             let found = fit(&made.nominal, &made.data);
             let words = format!("{seed}: {:?} {:?}", found.verdict, found.warnings);
@@ -62,7 +64,7 @@ fn rows_that_are_known_to_be_wrong_do_not_decide() {
     for (share, level) in [(0.1, Level::Good), (0.3, Level::InsideSampledRange)] {
         for seed in trials(5).seeds() {
             let mut made = session(80, 40 + seed);
-            let gross = Gross { share, seed, ..Gross::default() };
+            let gross = GrossErrors { share, seed, ..GrossErrors::default() };
             gross.spoil(&mut made.data);
             let found = fit(&made.nominal, &made.data);
             println!("{share}: {:?}", found.verdict);
@@ -73,14 +75,14 @@ fn rows_that_are_known_to_be_wrong_do_not_decide() {
 
 #[test]
 fn a_few_rows_of_another_form_do_not_doubt_the_input() {
-    for seed in some([71, 72, 73]) {
+    for seed in choose_some([71, 72, 73]) {
         let made = session(80, seed);
         // A board whose pose is mistaken for its mirror image: every sixteenth position is on the other side of the device.
         let flipped = |row: usize| match row % 16 {
             0 => -2.0 * made.data.observations[row].measurement.pose().translation,
             _ => Vector3::zeros(),
         };
-        let found = fit(&made.nominal, &changed(&made, flipped, |_, _| {}));
+        let found = fit(&made.nominal, &change_session(&made, flipped, |_, _| {}));
         println!("{:?}", found.verdict);
         assert_eq!(found.robustness.suspects().collect::<Vec<_>>(), [0, 16, 32, 48, 64]);
         assert_eq!(found.verdict.level, Level::Good);
@@ -92,10 +94,10 @@ fn a_few_rows_of_another_form_do_not_doubt_the_input() {
 
 #[test]
 fn a_device_that_was_moved_is_named_with_its_place() {
-    for (seed, from) in some([(1, 40), (2, 25), (3, 60)]) {
+    for (seed, from) in choose_some([(1, 40), (2, 25), (3, 60)]) {
         let made = session(80, seed);
         let moved = Vector3::new(0.0, 4e-3, -3e-3);
-        let data = changed(&made, |row| if row < from { Vector3::zeros() } else { moved }, |_, _| {});
+        let data = change_session(&made, |row| if row < from { Vector3::zeros() } else { moved }, |_, _| {});
         let found = fit(&made.nominal, &data);
         println!("{:?}", found.warnings);
         assert_eq!(found.verdict.level, Level::DoNotUse);
@@ -125,7 +127,7 @@ fn noise_in_a_wrong_unit_is_doubted() {
 #[test]
 fn a_zero_of_a_joint_is_named_and_taken_in() {
     let made = session(80, 3);
-    let data = changed(&made, |_| Vector3::zeros(), |_, readings| readings[2] += 6f64.to_radians());
+    let data = change_session(&made, |_| Vector3::zeros(), |_, readings| readings[2] += 6f64.to_radians());
     let found = fit(&made.nominal, &data);
     println!("{:?} {:?}", found.verdict, found.diagnosis);
     assert!(found.diagnosis.iter().any(|it| it.kind == DiagnosisKind::JointZero));
@@ -145,7 +147,7 @@ fn too_few_rows_are_never_good() {
 #[test]
 fn stragglers_do_not_count_as_coverage() {
     let mut made =
-        Simulation { count: 400, seed: 8, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+        Simulation { count: 400, seed: 8, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let middle = |row: usize| (made.data.readings(row)[1] - 0.6).abs() < 0.35;
     let far = |row: usize| (made.data.readings(row)[1] - 0.6).abs() > 2.3;
     let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -168,7 +170,7 @@ fn stragglers_do_not_count_as_coverage() {
 #[test]
 fn what_is_not_this_robot_is_not_to_be_used() {
     let made = Simulation { count: 80, seed: 12, device_anywhere: true, ..Simulation::default() }
-        .run(&elbow(), Kind::POSE)
+        .run(&elbow(), SessionKind::POSE)
         .unwrap();
     let level = |name: &str, robot: &Robot, data: &Dataset, frame| {
         let options = CalibrationOptions { frame, ..geometry() };
@@ -184,7 +186,7 @@ fn what_is_not_this_robot_is_not_to_be_used() {
         let turn =
             rotation::exp(&(Vector3::new(1.0, 2.0, 0.5).normalize() * if k % 2 == 0 { 1.5 } else { 0.0 }));
         let motion = Pose::new(turn, joint.frame.translation + away - turn * joint.frame.translation);
-        joint.screw = joint.screw.transformed(&motion);
+        joint.screw = joint.screw.transform(&motion);
         joint.frame = motion * joint.frame;
     }
     level("another robot", &other, &made.data, anywhere);
@@ -227,7 +229,7 @@ fn copies_are_nothing_to_judge_by() {
 fn registered_positions_are_the_best_there_are() {
     for seed in 0..10 {
         let made = Simulation { count: 60, seed, error_rotation_rad: 0.02, ..Simulation::default() }
-            .run(&elbow(), Kind::POSE)
+            .run(&elbow(), SessionKind::POSE)
             .unwrap();
         let mut points = Dataset::new(made.data.reading_names().to_vec());
         for row in 0..made.data.len() {

@@ -5,11 +5,12 @@ use poecal_arm::lie::Pose;
 use poecal_calibrate::{
     BlockChoice, Calibration, CalibrationOptions, Expectations, Gain, Level, Verdict, calibrate,
 };
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain};
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Quantity};
 use poecal_model::robot::{Robot, Sizes, TermGroup};
 use poecal_model::simulate::{
-    Kind, PictureSimulation, Simulated, Simulation, elbow, random, random_configuration, seven_axis,
+    PictureSimulation, SessionKind, Simulation, SimulationResult, elbow, random, random_configuration,
+    seven_axis,
 };
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -37,27 +38,27 @@ struct Truth {
 fn usual_terms(generator: &mut ChaCha8Rng) -> Sizes {
     let mut terms = Sizes::NONE;
     for group in [TermGroup::Sag, TermGroup::Ratio, TermGroup::Harmonics] {
-        terms[group] = Sizes::COMMON[group] * random::uniform(generator);
+        terms[group] = Sizes::COMMON[group] * random::uniform_number(generator);
     }
     terms
 }
 
 /// Points or poses of a tracker, in configurations in which the tip is in a part of the workspace and faces the tracker.
-fn tracked(seed: u64) -> Truth {
+fn track_session(seed: u64) -> Truth {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x3070);
     let robot = if seed.is_multiple_of(2) { elbow() } else { seven_axis() };
-    let size = 10f64.powf(-1.3 * random::uniform(&mut generator));
+    let size = 10f64.powf(-1.3 * random::uniform_number(&mut generator));
     let terms = usual_terms(&mut generator);
     let session = Simulation {
         seed,
-        count: 20 + (40.0 * random::uniform(&mut generator)) as usize,
+        count: 20 + (40.0 * random::uniform_number(&mut generator)) as usize,
         error_rotation_rad: size * 5e-3,
         error_position_m: size * 2e-3,
         terms,
         ..Simulation::default()
     };
-    let kind = if seed.is_multiple_of(3) { Kind::POSE } else { Kind::POINT };
-    let made: Simulated = session.run(&robot, kind).unwrap();
+    let kind = if seed.is_multiple_of(3) { SessionKind::POSE } else { SessionKind::POINT };
+    let made: SimulationResult = session.run(&robot, kind).unwrap();
     let (middle, direction) = (random::direction(&mut generator), random::direction(&mut generator));
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     while data.len() < session.count {
@@ -69,7 +70,7 @@ fn tracked(seed: u64) -> Truth {
         }
         let seen = made.device_from_base * made.actual.forward_kinematics(&readings);
         let position = seen.translation + random::normal_vector(&mut generator) * session.noise_position_m;
-        let measurement = if kind == Kind::POINT {
+        let measurement = if kind == SessionKind::POINT {
             Measurement::point(position)
         } else {
             Measurement::of_pose(&Pose::new(seen.rotation, position))
@@ -79,26 +80,26 @@ fn tracked(seed: u64) -> Truth {
     let (device_from_base, actual) = (made.device_from_base, made.actual);
     let at = move |readings: &[f64]| (device_from_base * actual.forward_kinematics(readings)).translation;
     let stated = if seed % 4 < 2 { Some(session.noise_position_m) } else { None };
-    let sigma = ByQuantity::default().with(Quantity::Position, stated);
+    let sigma = ByQuantity::default().with_value(Quantity::Position, stated);
     let noise_m2 = if stated.is_some() { 0.0 } else { 3.0 * session.noise_position_m.powi(2) };
     let options = CalibrationOptions { sigma, ..CalibrationOptions::default() };
     Truth { nominal: made.nominal, data, options, noise_m2, at: Box::new(at) }
 }
 
 /// Pictures of a board on the tip, by a camera beside the robot.
-fn photographed(seed: u64) -> Truth {
+fn photograph_session(seed: u64) -> Truth {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x9107);
-    let size = 10f64.powf(-1.3 * random::uniform(&mut generator));
+    let size = 10f64.powf(-1.3 * random::uniform_number(&mut generator));
     let terms = usual_terms(&mut generator);
     let session = Simulation {
         seed,
         terms,
-        count: 12 + (13.0 * random::uniform(&mut generator)) as usize,
+        count: 12 + (13.0 * random::uniform_number(&mut generator)) as usize,
         error_rotation_rad: size * 5e-3,
         error_position_m: size * 2e-3,
         ..Simulation::default()
     };
-    let made = PictureSimulation::usual(session, false).run(&elbow()).unwrap();
+    let made = PictureSimulation::with_usual_camera(session, false).run(&elbow()).unwrap();
     let (camera_from_base, actual, held) = (made.base_from_other.inverse(), made.actual, made.tip_from_held);
     let at =
         move |readings: &[f64]| (camera_from_base * actual.forward_kinematics(readings) * held).translation;
@@ -107,7 +108,7 @@ fn photographed(seed: u64) -> Truth {
 }
 
 /// Delivered model: the estimate and its expected errors.
-fn delivered(found: &Calibration) -> (&Robot, Estimate, &Expectations) {
+fn delivered_estimate(found: &Calibration) -> (&Robot, Estimate, &Expectations) {
     match found.correction.as_deref().filter(|it| it.has_terms()) {
         Some(it) => (&it.model.robot, it.estimate.clone(), &it.expected),
         None => (&found.robot, found.models.calibrated.clone(), &found.trust.expected),
@@ -117,8 +118,8 @@ fn delivered(found: &Calibration) -> (&Robot, Estimate, &Expectations) {
 /// Errors of an estimate of a robot, metres (RMS).
 fn rms_m(truth: &Truth, (robot, estimate): (&Robot, &Estimate), readings: &[Vec<f64>]) -> f64 {
     let width = readings[0].len();
-    let packed = Packed::new(robot, &readings.concat(), width);
-    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+    let packed = PackedValues::new(robot, &readings.concat(), width);
+    let (linkage, mut chain) = (Linkage::new(estimate), RowChain::default());
     let squares = readings.iter().enumerate().map(|(row, readings)| {
         chain.evaluate(&linkage, &packed, row, 0);
         (chain.target.translation - (truth.at)(readings)).norm_squared()
@@ -128,8 +129,8 @@ fn rms_m(truth: &Truth, (robot, estimate): (&Robot, &Estimate), readings: &[Vec<
 
 /// Errors of the nominal model with the best base and target in these configurations, metres (RMS): linear least squares.
 fn nominal_m(truth: &Truth, estimate: &Estimate, readings: &[Vec<f64>]) -> f64 {
-    let packed = Packed::new(&truth.nominal, &readings.concat(), readings[0].len());
-    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+    let packed = PackedValues::new(&truth.nominal, &readings.concat(), readings[0].len());
+    let (linkage, mut chain) = (Linkage::new(estimate), RowChain::default());
     let mut columns = DMatrix::zeros(3 * readings.len(), 9);
     let mut errors = DVector::zeros(3 * readings.len());
     for (row, readings) in readings.iter().enumerate() {
@@ -145,7 +146,7 @@ fn nominal_m(truth: &Truth, estimate: &Estimate, readings: &[Vec<f64>]) -> f64 {
 }
 
 /// Configurations uniform between the least and the largest measured reading of each joint.
-fn inside(data: &Dataset, seed: u64) -> Vec<Vec<f64>> {
+fn draw_inside(data: &Dataset, seed: u64) -> Vec<Vec<f64>> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xb0);
     let rows: Vec<&[f64]> = (0..data.len()).map(|row| data.readings(row)).collect();
     let range = |joint: usize| {
@@ -154,7 +155,10 @@ fn inside(data: &Dataset, seed: u64) -> Vec<Vec<f64>> {
     };
     let ranges: Vec<(f64, f64)> = (0..rows[0].len()).map(range).collect();
     let draw = |generator: &mut ChaCha8Rng| {
-        ranges.iter().map(|(least, most)| least + (most - least) * random::uniform(generator)).collect()
+        ranges
+            .iter()
+            .map(|(least, most)| least + (most - least) * random::uniform_number(generator))
+            .collect()
     };
     (0..JUDGED).map(|_| draw(&mut generator)).collect()
 }
@@ -171,10 +175,10 @@ struct Trial {
 impl Trial {
     fn from_truth(truth: &Truth, seed: u64) -> Self {
         let found = calibrate(&truth.nominal, &truth.data, &truth.options).unwrap();
-        let (robot, estimate, expected) = delivered(&found);
+        let (robot, estimate, expected) = delivered_estimate(&found);
         let measured: Vec<Vec<f64>> =
             found.fit_rows.iter().map(|&row| truth.data.readings(row as usize).to_vec()).collect();
-        let inside = inside(&truth.data, seed);
+        let inside = draw_inside(&truth.data, seed);
         let own =
             |readings: &[Vec<f64>]| rms_m(truth, (robot, &estimate), readings).hypot(truth.noise_m2.sqrt());
         let nominal = nominal_m(truth, &found.models.registered, &inside).hypot(truth.noise_m2.sqrt());
@@ -201,7 +205,7 @@ impl Trial {
 }
 
 /// Middle of some ratios, and the share of them from 0.7 to 1.5.
-fn summed(mut ratios: Vec<f64>) -> (f64, f64) {
+fn summarize_ratios(mut ratios: Vec<f64>) -> (f64, f64) {
     ratios.sort_by(f64::total_cmp);
     let near = ratios.iter().filter(|it| (0.7..=1.5).contains(*it)).count();
     (ratios[ratios.len() / 2], near as f64 / ratios.len() as f64)
@@ -210,10 +214,11 @@ fn summed(mut ratios: Vec<f64>) -> (f64, f64) {
 #[test]
 fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
     let sessions = trials(200);
-    for (name, of) in [("tracker", tracked as fn(u64) -> Truth), ("pictures", photographed)] {
+    for (name, of) in [("tracker", track_session as fn(u64) -> Truth), ("pictures", photograph_session)] {
         let all: Vec<Trial> =
             sessions.seeds().into_par_iter().map(|seed| Trial::from_truth(&of(seed), seed)).collect();
-        let [measured, inside] = [0, 1].map(|k| summed(all.iter().map(|it| it.ratios[k]).collect()));
+        let [measured, inside] =
+            [0, 1].map(|k| summarize_ratios(all.iter().map(|it| it.ratios[k]).collect()));
         let gains = all.iter().filter(|it| it.is_gain()).count();
         let recommended = all.iter().filter(|it| it.is_gain() && it.is_recommended()).count();
         let losses = all.iter().filter(|it| !it.is_gain() && it.is_recommended()).count();
@@ -232,13 +237,13 @@ fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
         // If few rows leave joint terms undetermined, the expected error exceeds the true one, and is never much smaller.
         assert!(all.iter().all(|it| it.ratios[1] > 0.4));
         // The ratios of single sessions scatter by a half.
-        let more = sessions.more(0.5);
+        let more = sessions.tolerance_factor(0.5);
         assert!((0.8..1.6 + more).contains(&inside.0) && (0.8..2.2 + more).contains(&measured.0));
     }
 }
 
 /// Calibration of a second session of the robot that a first one calibrated, with the robot `changed` in between.
-fn again(seed: u64, changed: impl Fn(Robot) -> Robot) -> Calibration {
+fn calibrate_again(seed: u64, changed: impl Fn(Robot) -> Robot) -> Calibration {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xa6a1);
     let mut terms = Sizes::NONE;
     for group in [TermGroup::Sag, TermGroup::Harmonics] {
@@ -252,10 +257,11 @@ fn again(seed: u64, changed: impl Fn(Robot) -> Robot) -> Calibration {
         terms,
         ..Simulation::default()
     };
-    let first = session.run(&elbow(), Kind::POINT).unwrap();
+    let first = session.run(&elbow(), SessionKind::POINT).unwrap();
     let options = CalibrationOptions::default();
     let calibrated = calibrate(&first.nominal, &first.data, &options).unwrap().robot;
-    let second = session.measure(&calibrated, changed(first.actual), Kind::POINT, &mut generator).unwrap();
+    let second =
+        session.measure(&calibrated, changed(first.actual), SessionKind::POINT, &mut generator).unwrap();
     calibrate(&second.nominal, &second.data, &options).unwrap()
 }
 
@@ -269,10 +275,10 @@ fn is_confirmed(found: &Calibration) -> bool {
 fn a_calibrated_robot_is_confirmed_unless_a_zero_moved() {
     let sessions = trials(40);
     let same: Vec<Calibration> =
-        sessions.seeds().into_par_iter().map(|seed| again(seed, |robot| robot)).collect();
+        sessions.seeds().into_par_iter().map(|seed| calibrate_again(seed, |robot| robot)).collect();
     let moved: Vec<Calibration> = (sessions.seeds().into_par_iter())
         .map(|seed| {
-            again(seed, |mut robot| {
+            calibrate_again(seed, |mut robot| {
                 // The zero of the first joint is absorbed by the base.
                 robot.joints[1 + (seed % 4) as usize].reading.offset += 0.05f64.to_radians();
                 robot
@@ -292,7 +298,7 @@ fn a_calibrated_robot_is_confirmed_unless_a_zero_moved() {
 /// A robot whose axes are held is located, whatever its rows determine.
 #[test]
 fn a_held_robot_is_located() {
-    let truth = tracked(3);
+    let truth = track_session(3);
     let blocks = BlockChoice { fix: vec!["joints".to_owned()], ..BlockChoice::default() };
     let options = CalibrationOptions { blocks, ..truth.options.clone() };
     let found = calibrate(&truth.nominal, &truth.data, &options).unwrap().verdict;

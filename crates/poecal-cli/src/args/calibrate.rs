@@ -4,16 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use poecal_calibrate::{
-    AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, RepairLimit, Repairs, Robust,
+    AcceptanceLimit, AcceptedModel, Corrections, DeviceFrameKnowledge, Level, RepairLimit, Repairs,
+    RobustLoss,
 };
-use poecal_lou2009::{Formulation, Method, Residual};
+use poecal_lou2009::{Method, PaperFormulation, PaperResidual};
 use poecal_model::robot::GravityDirection;
-use poecal_results::output::Existing;
+use poecal_results::output::ExistingFiles;
 use poecal_results::record::Record;
 
 use super::report::ReportPlace;
-use super::shared::{FIT, JUDGED, RESULTS, Reading, TreeArgs};
-use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
+use super::shared_args::{FIT, JUDGED, RESULTS, ReadingArgs, TreeArgs};
+use crate::quantity::{BelievedTolerance, parse_count, share, sigma_m, sigma_rad};
 use crate::words::{FORMULATION, FRAME, METHOD, MODEL, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 
 /// Arguments of `poecal calibrate`.
@@ -29,7 +30,7 @@ pub(crate) struct Calibrate {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     #[command(flatten)]
-    pub(crate) reading: Reading,
+    pub(crate) reading: ReadingArgs,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown", help_heading = FIT)]
     pub(crate) device_frame: DeviceFrameKnowledge,
@@ -77,11 +78,11 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = JUDGED)]
     pub(crate) held_out: Option<f64>,
     /// Seed of that choice [default: 1]
-    #[arg(long, value_parser = whole::<u64>, help_heading = JUDGED)]
+    #[arg(long, value_parser = parse_count::<u64>, help_heading = JUDGED)]
     pub(crate) seed: Option<u64>,
     /// How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers
     #[arg(long, value_parser = one_of(ROBUST), default_value = "auto", help_heading = FIT)]
-    pub(crate) robust: Robust,
+    pub(crate) robust: RobustLoss,
     /// What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole
     #[arg(long, value_parser = one_of(REPAIR), default_value = "auto", help_heading = FIT)]
     pub(crate) repair: Repairs,
@@ -91,10 +92,10 @@ pub(crate) struct Calibrate {
     pub(crate) repair_limit: Vec<RepairLimit>,
     /// Parameterisation of joint errors; all but the default are for comparison
     #[arg(long, value_parser = one_of(FORMULATION), default_value = "adjoint", hide = true)]
-    pub(crate) formulation: Formulation,
+    pub(crate) formulation: PaperFormulation,
     /// Residual of measured frames; the paper's is for comparison. Points have one residual only
     #[arg(long, value_parser = one_of(RESIDUAL), default_value = "tool", hide = true)]
-    pub(crate) residual: Residual,
+    pub(crate) residual: PaperResidual,
     /// Steps of the solver; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
     /// levenberg-marquardt]
     #[arg(long, value_parser = one_of(METHOD), hide = true)]
@@ -123,7 +124,7 @@ pub(crate) struct Calibrate {
     /// Limits that the errors of rows that were not fitted must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all
     /// errors in a unit. End with code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]
-    pub(crate) accept: Vec<Limit>,
+    pub(crate) accept: Vec<AcceptanceLimit>,
     /// Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
     #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
@@ -144,8 +145,12 @@ pub(crate) struct Calibrate {
 
 impl Calibrate {
     /// Treatment of existing results.
-    pub(crate) fn existing(&self) -> Existing {
-        if self.force_own && !self.force { Existing::Own } else { Existing::forced(self.force) }
+    pub(crate) fn existing(&self) -> ExistingFiles {
+        if self.force_own && !self.force {
+            ExistingFiles::Own
+        } else {
+            ExistingFiles::from_switch(self.force)
+        }
     }
 
     /// All input files.

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use poecal_calibrate::AcceptedModel;
-use poecal_compensate::MostChange;
+use poecal_compensate::MaxCorrection;
 use poecal_model::robot::ThirdAxis;
 
-use super::shared::{ColumnArgs, OutFile};
+use super::shared_args::{ColumnArgs, TextOutput};
 use crate::quantity::most_change;
 use crate::words::{LANGUAGE, MODEL, ProgramLanguage, THIRD_AXIS, one_of};
 
@@ -62,7 +62,7 @@ pub(crate) struct Compensate {
     pub(crate) nearest: bool,
     /// How far a joint may be moved beyond its zero, like 2deg,2mm; a target that takes more, at a singularity, stays as it is and is listed
     #[arg(long, value_name = "SIZES", value_parser = most_change, default_value = "2deg,2mm")]
-    pub(crate) max_correction: MostChange,
+    pub(crate) max_correction: MaxCorrection,
     /// Write nothing, only print what would be changed
     #[arg(long)]
     pub(crate) dry_run: bool,
@@ -70,5 +70,5 @@ pub(crate) struct Compensate {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }

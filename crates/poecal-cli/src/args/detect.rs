@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal_detect::Spec;
-use poecal_detect::print::{Measured, Page};
+use poecal_detect::BoardSpec;
+use poecal_detect::print::{PaperSize, PrintMeasurement};
 
-use super::shared::OutFile;
+use super::shared_args::TextOutput;
 
 /// Heading of the options of a board on paper.
 const PRINT: &str = "A board on paper";
@@ -28,14 +28,14 @@ pub(crate) struct Detect {
     pub(crate) preview: Option<PathBuf>,
     /// Draw this board to scale instead, like charuco:5x7:36mm:18mm:DICT_6X6_250, into a file .svg or .pdf; the words are those of --board
     #[arg(long, value_name = "BOARD", conflicts_with_all = ["pictures", "board", "preview"], help_heading = PRINT)]
-    pub(crate) print: Option<Spec>,
+    pub(crate) print: Option<BoardSpec>,
     /// The paper: a4, a3 and letter lie as the board does; a size such as 400x300mm is as stated
     #[arg(long, value_name = "a4|a3|letter|WxHmm", default_value = "a4", requires = "print", help_heading = PRINT)]
-    pub(crate) paper: Page,
+    pub(crate) paper: PaperSize,
     /// What a ruler shows on the print along x and along y, like 180.0mm,251.3mm: between the outer edges of all squares, or of the tags of a grid;
     /// from the left edge of the leftmost dot to that of the rightmost one; or of one loose tag. Prints the board with the size that it has
     #[arg(long, value_name = "X,Y", requires = "print", help_heading = PRINT)]
-    pub(crate) measured: Option<Measured>,
+    pub(crate) measured: Option<PrintMeasurement>,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }

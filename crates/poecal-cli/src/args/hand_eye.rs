@@ -3,24 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal_fit::hand_eye::CameraPlace;
+use poecal_fit::hand_eye::CameraMounting;
 use poecal_import::{PoseUnits, ReadOptions, camera_file};
 use poecal_results::hand_eye::FrameNames;
 use poecal_storage::disk::is_file;
 
-use super::shared::ChainArgs;
+use super::shared_args::ChainArgs;
 use crate::words::{FLANGE_POSES, HAND_EYE_CAMERA, TARGET_POSES, one_of};
 
 /// Arguments of `poecal hand-eye`.
 #[derive(Args, Debug)]
-pub(crate) struct HandEye {
+pub(crate) struct HandEyeArgs {
     /// Poses (CSV or xlsx): one file with those of the arm and of the target side by side, or two files, the arm's and the target's, joined by a column
     /// `image` or row by row. Instead of the target's poses the corners of its pictures, with --lens and --markers
     #[arg(required = true, num_args = 1..=2, value_name = "POSES")]
     pub(crate) poses: Vec<PathBuf>,
     /// Where the camera is
     #[arg(long, value_parser = one_of(HAND_EYE_CAMERA))]
-    pub(crate) camera: CameraPlace,
+    pub(crate) camera: CameraMounting,
     /// Units of columns that state none, like mm,deg
     #[arg(long, value_name = "LENGTH[,ANGLE]", default_value = "", hide_default_value = true, value_parser = units)]
     pub(crate) units: PoseUnits,
@@ -46,10 +46,10 @@ pub(crate) struct HandEye {
     #[arg(long, value_name = "BASE,FLANGE,CAMERA,TARGET")]
     pub(crate) frame_names: Option<FrameNames>,
     #[command(flatten)]
-    pub(crate) out: OutFrames,
+    pub(crate) out: FramesOutputArgs,
 }
 
-impl HandEye {
+impl HandEyeArgs {
     /// The input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         let lens = self.lens.iter().filter_map(|typed| camera_file(typed)).map(|(path, _)| path);
@@ -80,7 +80,7 @@ pub(super) fn units(text: &str) -> Result<PoseUnits, String> {
 
 /// Arguments of `poecal tcp`.
 #[derive(Args, Debug)]
-pub(crate) struct Tcp {
+pub(crate) struct TcpArgs {
     /// Poses of the flange (CSV or xlsx) in which the tip touched a fixed point; a column `point` for several points, a column `tip` for two tips along the
     /// tool, which show its direction
     pub(crate) poses: PathBuf,
@@ -93,10 +93,10 @@ pub(crate) struct Tcp {
     #[arg(long, value_name = "LENGTH[,ANGLE]", default_value = "", hide_default_value = true, value_parser = units)]
     pub(crate) units: PoseUnits,
     #[command(flatten)]
-    pub(crate) out: OutFrames,
+    pub(crate) out: FramesOutputArgs,
 }
 
-impl Tcp {
+impl TcpArgs {
     /// The input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         std::iter::once(&self.poses).chain(&self.robot).map(PathBuf::as_path).collect()
@@ -105,7 +105,7 @@ impl Tcp {
 
 /// Where the frames that were found go.
 #[derive(Args, Debug)]
-pub(crate) struct OutFrames {
+pub(crate) struct FramesOutputArgs {
     /// Folder for the results
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal_fit::hand_eye::CameraPlace;
-use poecal_model::simulate::Kind;
+use poecal_fit::hand_eye::CameraMounting;
+use poecal_model::simulate::SessionKind;
 
-use super::shared::TreeArgs;
-use crate::quantity::whole;
-use crate::words::{HAND_EYE_CAMERA, measured, one_of};
+use super::shared_args::TreeArgs;
+use crate::quantity::parse_count;
+use crate::words::{HAND_EYE_CAMERA, one_of, parser_of_measured};
 
 /// What is chosen, and the column or the word for it.
 fn choice(text: &str) -> Result<(String, String), String> {
@@ -25,7 +25,7 @@ pub(crate) struct Init {
     pub(crate) model: Option<PathBuf>,
     /// Instead of a project with a model: the file of poses for `poecal hand-eye`
     #[arg(long, value_parser = one_of(HAND_EYE_CAMERA), conflicts_with_all = ["model", "tcp"])]
-    pub(crate) hand_eye: Option<CameraPlace>,
+    pub(crate) hand_eye: Option<CameraMounting>,
     /// Instead of a project with a model: the file of touches for `poecal tcp`
     #[arg(long, conflicts_with = "model")]
     pub(crate) tcp: bool,
@@ -41,13 +41,13 @@ pub(crate) struct Init {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// Kind of the measurements
-    #[arg(long, value_parser = measured(), default_value = "point")]
-    pub(crate) kind: Kind,
+    #[arg(long, value_parser = parser_of_measured(), default_value = "point")]
+    pub(crate) kind: SessionKind,
     /// Number of configurations to suggest
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) count: u32,
     /// Seed of their choice
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, default_value_t = 1, value_parser = parse_count::<u64>)]
     pub(crate) seed: u64,
     /// Folder for the project; files in it are never overwritten
     #[arg(short, long, value_name = "DIR", default_value = "poecal-project")]

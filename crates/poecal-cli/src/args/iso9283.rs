@@ -7,13 +7,13 @@ use poecal_calibrate::FigureLimit;
 use poecal_results::iso9283::TestFrame;
 use poecal_results::record::Record;
 
-use super::shared::{ChainArgs, FIT, JUDGED, Meaning, OutFile, RESULTS};
+use super::shared_args::{ChainArgs, FIT, JUDGED, MeaningArgs, RESULTS, TextOutput};
 use crate::quantity::{sigma_m, sigma_rad};
 use crate::words::{TEST_FRAME, one_of};
 
 /// Arguments of `poecal iso9283`.
 #[derive(Args, Debug)]
-pub(crate) struct Iso9283 {
+pub(crate) struct Iso9283Args {
     /// Rows of the test (CSV, xlsx, or as instruments and recorders write them), joined: commanded and measured pose, and columns pose, cycle,
     /// approach, series, arm, speed, payload, as far as there are any
     #[arg(required = true)]
@@ -25,7 +25,7 @@ pub(crate) struct Iso9283 {
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     #[command(flatten)]
-    pub(crate) meaning: Meaning,
+    pub(crate) meaning: MeaningArgs,
     /// The measuring device's frame, in which accuracy is stated
     #[arg(long, value_parser = one_of(TEST_FRAME), default_value = "unknown", help_heading = FIT)]
     pub(crate) device_frame: TestFrame,
@@ -46,10 +46,10 @@ pub(crate) struct Iso9283 {
     #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }
 
-impl Iso9283 {
+impl Iso9283Args {
     /// All input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         self.measurements

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use poecal_model::offsets::End;
+use poecal_model::offsets::EndConstraint;
 use poecal_numerics::error::{ErrorKind, Result};
 
-use super::shared::{ChainArgs, OutFile};
+use super::shared_args::{ChainArgs, TextOutput};
 use crate::words::{OUTER_FRAME, OuterFrame, one_of};
 
 /// Arguments of `poecal offsets`.
 #[derive(Args, Debug)]
-pub(crate) struct Offsets {
+pub(crate) struct OffsetsArgs {
     /// Nominal robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) nominal: PathBuf,
     /// Model of the actual robot, with the same joints: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
@@ -28,18 +28,18 @@ pub(crate) struct Offsets {
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
-    pub(crate) place: OutFile,
+    pub(crate) place: TextOutput,
 }
 
-impl Offsets {
+impl OffsetsArgs {
     /// What is stated of a frame.
-    pub(crate) fn stated(&self, frame: OuterFrame) -> Result<Option<End>> {
+    pub(crate) fn stated_constraint(&self, frame: OuterFrame) -> Result<Option<EndConstraint>> {
         match (self.free.contains(&frame), self.fix.contains(&frame)) {
             (true, true) => {
                 ErrorKind::Option.refuse("found a frame in --free and in --fix, expected one of the two")
             }
-            (true, false) => Ok(Some(End::Free)),
-            (false, true) => Ok(Some(End::Kept)),
+            (true, false) => Ok(Some(EndConstraint::Free)),
+            (false, true) => Ok(Some(EndConstraint::Kept)),
             (false, false) => Ok(None),
         }
     }

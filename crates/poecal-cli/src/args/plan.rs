@@ -5,19 +5,19 @@ use std::time::Duration;
 
 use clap::{Arg, Args, Command};
 use poecal_calibrate::{Corrections, DeviceFrameKnowledge};
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_plan::plan::{PlanCriterion, RobotError};
 
-use super::shared::{CameraArgs, ColumnArgs, FIT, OutFile, TreeArgs};
+use super::shared_args::{CameraArgs, ColumnArgs, FIT, TextOutput, TreeArgs};
 use crate::quantity::{
-    BelievedTolerance, LengthAndAngle, Workspace, box_m, direction, distances_m, height_m, place_m,
-    robot_error, seconds, sigma_m, sigma_rad, whole,
+    BelievedTolerance, LengthAndAngle, WorkspaceChoice, box_m, direction, distances_m, height_m, parse_count,
+    place_m, robot_error, seconds, sigma_m, sigma_rad,
 };
-use crate::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, simulated};
+use crate::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, parser_of_simulated};
 
 /// Arguments of `poecal plan`.
 #[derive(Args, Debug)]
-pub(crate) struct Plan {
+pub(crate) struct PlanArgs {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
@@ -39,8 +39,8 @@ pub(crate) struct Plan {
     #[command(flatten)]
     pub(crate) visits: VisitArgs,
     /// What will be measured of the tip
-    #[arg(long, value_parser = simulated(), default_value = "point")]
-    pub(crate) kind: Kind,
+    #[arg(long, value_parser = parser_of_simulated(), default_value = "point")]
+    pub(crate) kind: SessionKind,
     /// Number of different configurations to fit [with --purpose drift: to measure at each visit, by default 8]
     #[arg(long, value_name = "N", default_value_if("purpose", "drift", "8"), default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) count: u32,
@@ -58,7 +58,7 @@ pub(crate) struct Plan {
         default_value = "limits",
         allow_hyphen_values = true
     )]
-    pub(crate) workspace: Workspace,
+    pub(crate) workspace: WorkspaceChoice,
     /// Rows that are in the list in any case, or were measured already (a table of joint readings): new ones complete them, and --count counts both.
     /// Rows whose `set` is held_out do not count
     #[arg(long, value_name = "FILE")]
@@ -85,7 +85,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30s")]
     pub(crate) stop: Duration,
     /// Seed of everything random
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, default_value_t = 1, value_parser = parse_count::<u64>)]
     pub(crate) seed: u64,
     /// Write the list also as a program of joint motions with a stop at each row: its name ends in .script (Universal Robots), .mod (ABB),
     /// .src (KUKA) or .ls (FANUC)
@@ -95,7 +95,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
-    pub place: OutFile,
+    pub place: TextOutput,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,
@@ -109,7 +109,7 @@ const OF_VISITS: &str = "purpose repeatability tool reference columns units coun
 const NOT_OF_PICTURES: [&str; 4] = ["kind", "sigma_position", "sigma_rotation", "robot_error"];
 
 /// The command with its options that exclude each other.
-pub(crate) fn exclusive(plan: Command) -> Command {
+pub(crate) fn with_exclusions(plan: Command) -> Command {
     let excluded = |kept: &str| {
         let options = plan.get_opts().map(Arg::get_id);
         let others = options.filter(|id| !kept.split(' ').any(|it| it == id.as_str()));

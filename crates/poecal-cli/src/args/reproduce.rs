@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::quantity::whole;
+use crate::quantity::parse_count;
 
 /// The experiments that can be repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -28,7 +28,7 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) starts: u32,
     /// Seed of everything random
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, default_value_t = 1, value_parser = parse_count::<u64>)]
     pub(crate) seed: u64,
     /// Folder for the report
     #[arg(long, value_name = "DIR")]

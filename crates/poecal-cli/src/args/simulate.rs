@@ -5,17 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 use poecal_calibrate::DeviceFrameKnowledge;
 #[cfg(any(unix, windows))]
-use poecal_detect::Spec;
+use poecal_detect::BoardSpec;
 #[cfg(any(unix, windows))]
-use poecal_fit::hand_eye::CameraPlace;
+use poecal_fit::hand_eye::CameraMounting;
 use poecal_model::robot::Sizes;
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
-use super::shared::TreeArgs;
+use super::shared_args::TreeArgs;
 use crate::quantity::{LengthAndAngle, direction, terms};
 #[cfg(any(unix, windows))]
 use crate::words::CAMERA;
-use crate::words::{FRAME, one_of, simulated};
+use crate::words::{FRAME, one_of, parser_of_simulated};
 
 /// Arguments of `poecal simulate`.
 #[derive(Args, Debug)]
@@ -44,8 +44,8 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Kind of the measurements
-    #[arg(long, value_parser = simulated(), default_value = "pose")]
-    pub(crate) kind: Kind,
+    #[arg(long, value_parser = parser_of_simulated(), default_value = "pose")]
+    pub(crate) kind: SessionKind,
     /// The measuring device's frame: unknown, or the robot's base
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
     pub(crate) device_frame: DeviceFrameKnowledge,
@@ -55,7 +55,7 @@ pub(crate) struct Simulate {
     /// Pictures of a board and the readings of each, in place of measurements: where the camera is
     #[cfg(any(unix, windows))]
     #[arg(long, value_parser = one_of(CAMERA), conflicts_with_all = ["kind", "device_frame", "held_out_count", "terms", "gravity"])]
-    pub(crate) camera: Option<CameraPlace>,
+    pub(crate) camera: Option<CameraMounting>,
     /// The board in the pictures, as poecal detect --print draws it
     #[cfg(any(unix, windows))]
     #[arg(
@@ -64,7 +64,7 @@ pub(crate) struct Simulate {
         default_value = "charuco:7x5:36mm:26mm:DICT_4X4_50",
         requires = "camera"
     )]
-    pub(crate) board: Spec,
+    pub(crate) board: BoardSpec,
     /// Folder for the files
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

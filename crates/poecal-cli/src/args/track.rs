@@ -6,13 +6,13 @@ use clap::Args;
 use poecal_results::record::Record;
 
 use super::ReportPlace;
-use super::shared::{JUDGED, Meaning, RESULTS};
+use super::shared_args::{JUDGED, MeaningArgs, RESULTS};
 use crate::quantity::sigma_m;
 use crate::words::{DEVICE, TOOL, one_of};
 
 /// Arguments of `poecal track`.
 #[derive(Args, Debug)]
-pub(crate) struct Track {
+pub(crate) struct TrackArgs {
     /// The calibration (calibration.json)
     pub(crate) calibration: PathBuf,
     /// Measurements of the visit, preferably of configurations of the calibration
@@ -22,7 +22,7 @@ pub(crate) struct Track {
     #[arg(long, value_name = "OLD.csv", help_heading = JUDGED)]
     pub(crate) reference: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) meaning: Meaning,
+    pub(crate) meaning: MeaningArgs,
     /// Whether the measuring device stands where it stood [default: known where the calibration was made in the base frame]
     #[arg(long, value_parser = one_of(DEVICE), value_name = "WHERE", action = clap::ArgAction::Set, help_heading = JUDGED)]
     pub(crate) device: Option<bool>,
@@ -62,7 +62,7 @@ pub(crate) struct Track {
     pub(crate) json: bool,
 }
 
-impl Track {
+impl TrackArgs {
     /// All input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         let files = std::iter::once(&self.calibration).chain(&self.measurements).chain(&self.reference);

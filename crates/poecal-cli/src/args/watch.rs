@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::plan::FitArgs;
-use super::shared::{ColumnArgs, TreeArgs};
-use crate::quantity::{Workspace, error_m, whole};
+use super::shared_args::{ColumnArgs, TreeArgs};
+use crate::quantity::{WorkspaceChoice, error_m, parse_count};
 
 /// Arguments of `poecal watch`.
 #[derive(Args, Debug)]
-pub(crate) struct Watch {
+pub(crate) struct WatchArgs {
     /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
     pub(crate) model: PathBuf,
     /// Measurement file (CSV) that grows while it is watched; a last line without an end is waited for
@@ -31,7 +31,7 @@ pub(crate) struct Watch {
         default_value = "limits",
         allow_hyphen_values = true
     )]
-    pub(crate) workspace: Workspace,
+    pub(crate) workspace: WorkspaceChoice,
     /// End with code 0 as soon as the expected error is at most this, like 0.15mm: of the corrected model, of the calibrated one without
     /// corrections
     #[arg(long, value_name = "LENGTH", value_parser = error_m)]
@@ -40,7 +40,7 @@ pub(crate) struct Watch {
     #[arg(long)]
     pub(crate) batch: bool,
     /// Seed of everything random
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, default_value_t = 1, value_parser = parse_count::<u64>)]
     pub(crate) seed: u64,
     /// Print a line of JSON for each row
     #[arg(long)]

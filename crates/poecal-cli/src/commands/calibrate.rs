@@ -4,13 +4,13 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal_calibrate::{
-    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Gain, Level, RepairLimits,
-    Repaired, Stage, calibrate_repairing, settle_sets,
+    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, CalibrationStage, Decision, Gain, Level,
+    RepairLimits, RepairedSession, calibrate_repairing, settle_sets,
 };
 use poecal_formats::abb::AbbCalibration;
 use poecal_import as measurements;
 use poecal_import::ReadOptions;
-use poecal_lou2009::{Residual, formulated};
+use poecal_lou2009::{PaperResidual, to_formulation};
 use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
 use poecal_model::robot::Tolerance;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -18,18 +18,20 @@ use poecal_report as report;
 use poecal_report::Detail;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::model::Model;
-use poecal_results::output::{self, Contents, Existing, FilePlace, FolderPlace, Page, Results, free_folder};
+use poecal_results::output::{
+    self, Contents, ExistingFiles, PagePieces, ReservedFile, ReservedFolder, Results, free_folder,
+};
 use poecal_results::record::Record;
 use poecal_results::residuals::{ResidualRows, Residuals};
 use poecal_results::shapes::Shapes;
 use poecal_storage::named_files::{refuse_fitted, refuse_repeats};
 
 use super::models::read_model;
-use super::typed::command;
+use super::reproducing_command::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
 use crate::quantity::BelievedTolerance;
-use crate::style::{self, labelled, shown};
+use crate::style::{self, label_paragraph, printable_path};
 use crate::timings::{self, Timings};
 use crate::{DONE, WORSE};
 
@@ -45,30 +47,30 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     model.terms_left_out().iter().for_each(|note| console.note(note));
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let out = folder(arguments);
-    let places = Places::reserve(arguments, &out, console)?;
+    let places = CalibrateOutputs::reserve(arguments, &out, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = CalibrationOptions { devices: model.devices_of(&data), ..options(arguments, console)? };
     let record = record(arguments)?;
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
-    if arguments.residual != Residual::default() && !poses {
+    if arguments.residual != PaperResidual::default() && !poses {
         console.warning(format!(
             "--residual {} has no effect: it is about measured frames, and there are none",
             arguments.residual.word()
         ));
     }
     timings.end("read");
-    let bar = console.progress(Stage::ALL.len() as u64);
+    let bar = console.progress(CalibrationStage::ALL.len() as u64);
     let repaired = calibrate_repairing(&model.robot, &data, &options, &mut |stage| {
-        let step = Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0);
+        let step = CalibrationStage::ALL.iter().position(|&other| other == stage).unwrap_or(0);
         bar.set(step as u64, stage.words());
         match stage {
-            Stage::Registration | Stage::Fit => {}
-            Stage::Corrections | Stage::Analysis => timings.end("start"),
+            CalibrationStage::Registration | CalibrationStage::Fit => {}
+            CalibrationStage::Corrections | CalibrationStage::Analysis => timings.end("start"),
         }
     });
     timings.end("analysis");
     bar.finish();
-    let Repaired { calibration, data } = repaired?;
+    let RepairedSession { calibration, data } = repaired?;
     let file = CalibrationFile { record, ..CalibrationFile::new(&calibration, &data, inputs) };
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
     let text = if arguments.json {
@@ -93,9 +95,9 @@ fn table(file: &CalibrationFile, detail: Detail, console: &Console) -> String {
     if detail == Detail::Full {
         return report::summary(file, detail);
     }
-    let short = report::short(file, console.lines_said());
-    let next = short.next.map_or_else(String::new, |next| labelled("next", next));
-    short.table + &labelled("more", &format!("--verbose: {}", short.left)) + &next
+    let short = report::short_summary(file, console.lines_said());
+    let next = short.next.map_or_else(String::new, |next| label_paragraph("next", next));
+    short.table + &label_paragraph("more", &format!("--verbose: {}", short.left)) + &next
 }
 
 /// All warnings and diagnoses: people do not read those in the JSON.
@@ -182,8 +184,8 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         frame: arguments.device_frame,
         blocks: BlockChoice { free: arguments.free.clone(), fix: arguments.fix.clone() },
         sigma: ByQuantity::default()
-            .with(Quantity::Position, arguments.sigma_position)
-            .with(Quantity::Rotation, arguments.sigma_rotation),
+            .with_value(Quantity::Position, arguments.sigma_position)
+            .with_value(Quantity::Rotation, arguments.sigma_rotation),
         tolerance: match &arguments.tolerance {
             BelievedTolerance::Given(tolerance) => Some(*tolerance),
             BelievedTolerance::Of(path) => Some(makers_tolerance(path, console)?),
@@ -199,9 +201,9 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         robust: arguments.robust,
         move_tip: arguments.move_tip,
         repair: arguments.repair,
-        repair_limits: RepairLimits::with(&arguments.repair_limit),
-        accept: AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?,
-        formulation: formulated(arguments.formulation, arguments.residual, method),
+        repair_limits: RepairLimits::with_overrides(&arguments.repair_limit),
+        accept: AcceptanceLimits::from_choice(arguments.accept.clone(), arguments.accept_model)?,
+        formulation: to_formulation(arguments.formulation, arguments.residual, method),
         ..usual
     })
 }
@@ -233,28 +235,28 @@ const FOLDER: &str = "poecal-out";
 fn folder(arguments: &Calibrate) -> PathBuf {
     match &arguments.out {
         Some(folder) => folder.clone(),
-        None if arguments.existing() == Existing::Kept => free_folder(Path::new(FOLDER)),
+        None if arguments.existing() == ExistingFiles::Kept => free_folder(Path::new(FOLDER)),
         None => FOLDER.into(),
     }
 }
 
 /// Places of the results.
-struct Places {
-    folder: FolderPlace,
+struct CalibrateOutputs {
+    folder: ReservedFolder,
     /// A report outside the results.
-    report: Option<FilePlace>,
+    report: Option<ReservedFile>,
 }
 
-impl Places {
+impl CalibrateOutputs {
     fn reserve(arguments: &Calibrate, out: &Path, console: &Console) -> Result<Self> {
         let (existing, inputs) = (arguments.existing(), arguments.inputs());
         let folder =
-            FolderPlace::reserve(out, Contents::Calibration, existing, &inputs, &mut console.warner())?;
+            ReservedFolder::reserve(out, Contents::Calibration, existing, &inputs, &mut console.warner())?;
         let report = match &arguments.report {
             Some(ReportPlace::File(path)) => folder.reserve_report(path, &inputs, &mut console.warner())?,
             Some(ReportPlace::None) | None => None,
         };
-        Ok(Places { folder, report })
+        Ok(CalibrateOutputs { folder, report })
     }
 }
 
@@ -264,7 +266,7 @@ pub(super) fn page(
     rows: &Residuals,
     calibration: &Path,
     console: &Console,
-) -> Result<Page> {
+) -> Result<PagePieces> {
     let shapes = Shapes::read(file, calibration);
     shapes.notes.iter().for_each(|note| console.remark(note));
     report::calibration_page_with(file, rows, &shapes)
@@ -272,7 +274,7 @@ pub(super) fn page(
 
 /// Writes the results; returns their place.
 fn write(
-    (places, out): (Places, &Path),
+    (places, out): (CalibrateOutputs, &Path),
     arguments: &Calibrate,
     (model, data, calibration): (&Model, &Dataset, &Calibration),
     file: CalibrationFile,
@@ -280,7 +282,8 @@ fn write(
 ) -> Result<String> {
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
-    let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::from_calibration(data, calibration));
+    let residuals =
+        (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::from_calibration(data, calibration));
     let own = out.join("calibration.json");
     let report = residuals.as_ref().map(|rows| page(&file, rows, &own, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
@@ -291,24 +294,28 @@ fn write(
     let has_report = written.files.iter().any(|name| *name == output::REPORT);
     let mut words = if has_report && !arguments.verbose {
         let beside = written.files.len() - 1;
-        labelled(
+        label_paragraph(
             "written",
-            &format!("{}: open {}; {beside} files beside it", shown(&written.folder), output::REPORT),
+            &format!(
+                "{}: open {}; {beside} files beside it",
+                printable_path(&written.folder),
+                output::REPORT
+            ),
         )
     } else {
-        style::written(&written.folder, &written.files)
+        style::describe_written_files(&written.folder, &written.files)
     };
     if arguments.verbose {
         let text = format!(
             "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",
             written.largest.position_m, written.largest.rotation_rad
         );
-        words.push_str(&labelled("", &text));
+        words.push_str(&label_paragraph("", &text));
     }
     if let Some(ReportPlace::File(path)) = place
         && !has_report
     {
-        words.push_str(&labelled("report", &shown(path)));
+        words.push_str(&label_paragraph("report", &printable_path(path)));
     }
     Ok(words)
 }

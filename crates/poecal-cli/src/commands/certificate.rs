@@ -5,14 +5,14 @@ use std::path::Path;
 use poecal_calibrate::Level;
 use poecal_formats::logo;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_report::{Attest, certificate_page};
+use poecal_report::{CertificateExtras, certificate_page};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_results::record::Record;
 
 use crate::args::Report;
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{label_paragraph, printable_path};
 
 pub(super) fn certificate(arguments: &Report, console: &Console) -> Result<u8> {
     let calibration = arguments.calibration.as_path();
@@ -25,13 +25,13 @@ pub(super) fn certificate(arguments: &Report, console: &Console) -> Result<u8> {
             .in_file(calibration));
     }
     let stated = arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str()));
-    let record = file.record.clone().overridden(&Record::from_pairs(stated)?);
+    let record = file.record.clone().override_with(&Record::from_pairs(stated)?);
     let logo = arguments.logo.as_deref().map(logo::read).transpose()?;
     let out = arguments.out.clone().unwrap_or_else(|| calibration.with_file_name("certificate.html"));
-    let existing = if arguments.force { Existing::Replaced } else { Existing::Own };
+    let existing = if arguments.force { ExistingFiles::Replaced } else { ExistingFiles::Own };
     let inputs: Vec<&Path> = std::iter::once(calibration).chain(arguments.logo.as_deref()).collect();
-    let place = FilePlace::reserve(&out, existing, &inputs, &mut console.warner())?;
+    let place = ReservedFile::reserve(&out, existing, &inputs, &mut console.warner())?;
     let sha256 = Inputs::checksums(std::iter::once(calibration))?.into_values().next();
-    place.write(certificate_page(&file, &record, &Attest { sha256, logo }))?;
-    Ok(console.say_of(&labelled("written", &shown(&out)), &out))
+    place.write(certificate_page(&file, &record, &CertificateExtras { sha256, logo }))?;
+    Ok(console.say_of(&label_paragraph("written", &printable_path(&out)), &out))
 }

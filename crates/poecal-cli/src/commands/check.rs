@@ -12,11 +12,11 @@ use poecal_report as report;
 use poecal_results::model::Model;
 
 use crate::DONE;
-use crate::args::Check;
+use crate::args::CheckArgs;
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{label_paragraph, printable_path};
 
-pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
+pub(crate) fn check(arguments: &CheckArgs, console: &Console) -> Result<u8> {
     let options = arguments.reading.options();
     let Some(path) = &arguments.model else {
         return ErrorKind::Option
@@ -45,16 +45,16 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
 }
 
 /// The command that makes one table from joined files.
-fn next(arguments: &Check, model: &Path, file: &MeasurementFile) -> String {
+fn next(arguments: &CheckArgs, model: &Path, file: &MeasurementFile) -> String {
     if file.join.is_none() {
         return String::new();
     }
-    let files: Vec<String> = arguments.measurements.iter().map(|path| shown(path)).collect();
-    labelled(
+    let files: Vec<String> = arguments.measurements.iter().map(|path| printable_path(path)).collect();
+    label_paragraph(
         "next",
         &format!(
             "poecal import {} {} --out session.csv writes one table, and how it was made",
-            shown(model),
+            printable_path(model),
             files.join(" ")
         ),
     )

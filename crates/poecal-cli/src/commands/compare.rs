@@ -21,7 +21,7 @@ pub(crate) fn compare(arguments: &Compare, console: &Console) -> Result<u8> {
     second.robot().map_err(|error| error.in_file(&arguments.second))?;
     let found = compare::compare(&first, &second, arguments.limit_m()).map_err(in_file)?;
     let [one, other] = [&arguments.first, &arguments.second].map(|path| path.display().to_string());
-    let told = report::Comparison::new((&one, &first), (&other, &second), &found)?;
+    let told = report::ComparisonReport::new((&one, &first), (&other, &second), &found)?;
     let text = if arguments.json {
         report::json(&told)?
     } else {

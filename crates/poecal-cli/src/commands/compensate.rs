@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use poecal_calibrate::AcceptedModel;
 use poecal_compensate::{
-    ChangeOptions, Given, Language, ProgramOptions, TableOptions, compensate_file, compensate_table,
+    ChangeOptions, Language, ProgramOptions, StatedFrames, TableOptions, compensate_file, compensate_table,
 };
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
-use poecal_results::calibration_file::{Counted, TaughtRobot};
+use poecal_results::calibration_file::{ControllerCounts, TaughtRobot};
 use poecal_results::model::{Model, ModelSource};
-use poecal_results::output::FilePlace;
+use poecal_results::output::ReservedFile;
 
 use crate::args::{Compensate, ProgramLanguage};
 use crate::console::Console;
@@ -24,17 +24,17 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let inputs: Vec<&Path> = inputs.into_iter().chain(mapping).map(PathBuf::as_path).collect();
     let place = if arguments.dry_run { None } else { arguments.place.reserve(&inputs, console)? };
     let model = Model::read(&arguments.calibration, &ChainSelection::default())?;
-    let model = if arguments.of == AcceptedModel::Corrected { model.corrected()? } else { model };
+    let model = if arguments.of == AcceptedModel::Corrected { model.corrected_model()? } else { model };
     let ModelSource::Calibration(file) = &model.source else {
         return Err(ErrorKind::Option.error("found a robot model, expected a calibration.json, which has the nominal robot and the actual one").in_file(&arguments.calibration));
     };
     file.gain_doubt().into_iter().for_each(|doubt| console.warning(doubt));
     let worse = arguments.require_gain && !file.has_clear_gain();
-    let taught = file.taught(&model.robot)?;
+    let taught = file.taught_robot(&model.robot)?;
     let factors = factors(&model.robot, &arguments.factors, console)?;
     let robots = (&taught.robot, &model.robot);
     if let Some(language) = language(arguments)? {
-        let counted = file.counted(&taught.robot, arguments.third_axis)?;
+        let counted = file.controller_counts(&taught.robot, arguments.third_axis)?;
         let robots = (&taught, &model.robot);
         let code = robot_program(arguments, language, robots, &factors, counted, place, console)?;
         return Ok(if worse { WORSE } else { code });
@@ -92,8 +92,8 @@ fn robot_program(
     language: Language,
     (taught, actual): (&TaughtRobot, &Robot),
     factors: &[f64],
-    counted: Counted,
-    place: Option<FilePlace>,
+    counted: ControllerCounts,
+    place: Option<ReservedFile>,
     console: &Console,
 ) -> Result<u8> {
     let columns = &arguments.columns;
@@ -113,7 +113,7 @@ fn robot_program(
     }
     let options = ProgramOptions {
         language,
-        given: given(arguments, language)?.taught(&taught.base, &taught.tool),
+        given: read_stated_frames(arguments, language)?.with_taught_frames(&taught.base, &taught.tool),
         check: arguments.check,
         change: change(arguments),
         each: arguments.json,
@@ -136,8 +136,8 @@ fn robot_program(
 }
 
 /// Tools and frames as stated on the command line.
-fn given(arguments: &Compensate, language: Language) -> Result<Given> {
-    let mut given = Given::default();
+fn read_stated_frames(arguments: &Compensate, language: Language) -> Result<StatedFrames> {
+    let mut given = StatedFrames::default();
     for words in &arguments.tool_data {
         given.add_tool(words, language)?;
     }

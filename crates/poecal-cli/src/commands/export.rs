@@ -7,8 +7,8 @@ use poecal_formats::urdf::ChainSelection;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_results::export::{self, ExportFormat, ExportOptions};
 use poecal_results::model::{Model, ModelFormat};
-use poecal_results::output::{Existing, FilePlace};
-use poecal_storage::limits::Limit;
+use poecal_results::output::{ExistingFiles, ReservedFile};
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text::read_up_to;
 
 use super::joint_offsets::with_offsets;
@@ -77,9 +77,9 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
     let model = Model::read(&arguments.model, if is_whole { &whole } else { &selection })?;
     warn_of(&model, &arguments.model, console);
     let model = with_offsets(model, &arguments.offset, console)?;
-    let model = if arguments.of == AcceptedModel::Corrected { model.corrected()? } else { model };
+    let model = if arguments.of == AcceptedModel::Corrected { model.corrected_model()? } else { model };
     if let Some(urdf) = &arguments.onto {
-        let converted = export::onto(&model, urdf, &selection)?;
+        let converted = export::write_onto(&model, urdf, &selection)?;
         console.warnings(&converted.notes);
         console.deliver(converted.text, place)?;
         return Ok(DONE);
@@ -87,7 +87,7 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
     let motors = arguments
         .motors
         .as_ref()
-        .map(|path| read_up_to(path, "a calibration of motors (JSON)", Limit::Settings))
+        .map(|path| read_up_to(path, "a calibration of motors (JSON)", ResourceLimit::Settings))
         .transpose()?;
     let options = ExportOptions { hash: arguments.hash.clone(), motors };
     let exported = export::export(&model, format, &options)?;
@@ -96,8 +96,8 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
         (Some(text), Some(out)) if out != Path::new("-") && !out.starts_with("/dev") => {
             let mut name = out.clone().into_os_string();
             name.push(".joints.json");
-            let existing = Existing::forced(arguments.place.force);
-            let place = FilePlace::reserve(Path::new(&name), existing, &inputs, &mut console.warner())?;
+            let existing = ExistingFiles::from_switch(arguments.place.force);
+            let place = ReservedFile::reserve(Path::new(&name), existing, &inputs, &mut console.warner())?;
             Some((text.clone(), place, PathBuf::from(name)))
         }
         _ => None,

@@ -13,13 +13,14 @@ use poecal_numerics::threads::threads_now;
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::fleet::{
-    Found, InputRow, LEDGER, Ledger, LedgerRow, Station, doubled, exchanged, newest, read_ledgers,
+    InboxFile, InputRow, LEDGER, Ledger, LedgerRow, Station, find_doubled_files, find_exchanged_robot,
+    list_files, read_ledgers,
 };
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_results::settings::{SettingValue, Settings};
-use poecal_results::validation::now;
-use poecal_storage::named_files::actual;
-use poecal_storage::{held, limits};
+use poecal_results::validation::current_time;
+use poecal_storage::named_files::canonical_path;
+use poecal_storage::{limits, write_locks};
 
 use crate::args::{Fleet, FleetCommand, FleetPrior, FleetReport};
 use crate::console::Console;
@@ -42,20 +43,20 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
         }
         None => station.ledger.clone(),
     };
-    let _held = held::hold(&place, "the ledger", held::patience(), &mut console.warner())?;
+    let _held = write_locks::hold(&place, "the ledger", write_locks::patience(), &mut console.warner())?;
     let mut ledger = Ledger::open(&place)?;
     let mut seen: BTreeMap<PathBuf, String> = BTreeMap::new();
     let mut told = BTreeSet::new();
     let mut again = arguments.rerun;
     loop {
-        let (all, left) = newest(&station)?;
+        let (all, left) = list_files(&station)?;
         for other in left {
             let sentence = other.to_string();
             if told.insert(other) {
                 console.warning(sentence);
             }
         }
-        let mut own: Vec<Found> =
+        let mut own: Vec<InboxFile> =
             all.into_iter().filter(|it| arguments.shard.is_none_or(|shard| it.is_of_shard(shard))).collect();
         own.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.cmp(b)));
         if arguments.watch.is_some() {
@@ -93,16 +94,16 @@ struct Counts {
 /// Calibrates the robots that the ledger does not have.
 fn work_off(
     station: &Station,
-    all: &[Found],
+    all: &[InboxFile],
     ledger: &mut Ledger,
     again: bool,
     console: &Console,
 ) -> Result<Counts> {
-    let shared = Shared::read(station)?;
+    let shared = SharedInputs::read(station)?;
     let mut failed = 0;
     let (open, failed_before) = find_open(station, all, ledger, again, &shared);
     let before = find_changed(&open, ledger, again);
-    let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
+    let doubles = find_doubled_files(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
     let (skipped, total) = (all.len() - open.len(), open.len());
     let workers = threads_now().min(total.max(1));
     let next = AtomicUsize::new(0);
@@ -134,7 +135,7 @@ fn work_off(
                 if let Some(reason) = row.reason.as_ref().filter(|_| !row.is_passed()) {
                     console.warning(format!("{} {}: {reason}", row.serial, row.date));
                 }
-                let row = LedgerRow { time: now().unwrap_or_default(), ..row };
+                let row = LedgerRow { time: current_time().unwrap_or_default(), ..row };
                 if let Err(error) = ledger.append(row) {
                     result = Err(error);
                     next.store(usize::MAX / 2, Ordering::Relaxed);
@@ -153,18 +154,18 @@ fn work_off(
 /// Finds the robots that the ledger does not have, with their rows, and counts the earlier ones that failed.
 fn find_open(
     station: &Station,
-    all: &[Found],
+    all: &[InboxFile],
     ledger: &Ledger,
     again: bool,
-    shared: &Shared,
-) -> (Vec<(Found, LedgerRow)>, usize) {
+    shared: &SharedInputs,
+) -> (Vec<(InboxFile, LedgerRow)>, usize) {
     let mut failed = 0;
-    let mut open: Vec<(Found, LedgerRow)> = Vec::new();
+    let mut open: Vec<(InboxFile, LedgerRow)> = Vec::new();
     for found in all {
-        open.push((found.clone(), begun(station, found, shared)));
+        open.push((found.clone(), initial_row(station, found, shared)));
     }
     // A file that was refused as another robot's is tried again if it no longer is.
-    let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
+    let doubles = find_doubled_files(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
     let mut doubles = doubles.iter();
     open.retain(|(_, row)| {
         let is_double = doubles.next().is_some_and(Option::is_some);
@@ -177,7 +178,7 @@ fn find_open(
 }
 
 /// Reason of refusal for each robot, if the ledger has another file of it.
-fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Vec<Option<String>> {
+fn find_changed(open: &[(InboxFile, LedgerRow)], ledger: &Ledger, again: bool) -> Vec<Option<String>> {
     open
         .iter()
         .map(|(_, row)| {
@@ -195,7 +196,7 @@ fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Ve
 /// Calibrates robots in sequence, of those that no other thread took, until none remains.
 fn calibrate_next(
     (station, prior): (&Station, &[OsString]),
-    open: &[(Found, LedgerRow)],
+    open: &[(InboxFile, LedgerRow)],
     (changed, doubles): (&[Option<String>], &[Option<String>]),
     (next, own): (&AtomicUsize, &mpsc::Sender<(usize, LedgerRow)>),
 ) {
@@ -203,11 +204,11 @@ fn calibrate_next(
         let at = next.fetch_add(1, Ordering::Relaxed);
         let Some((found, row)) = open.get(at) else { return };
         let done = match (&changed[at], doubles[at].as_ref().filter(|_| found.fault().is_none())) {
-            (Some(sentence), _) => refused(row.clone(), sentence.clone()),
+            (Some(sentence), _) => refused_row(row.clone(), sentence.clone()),
             (None, Some(sentence)) => {
-                LedgerRow { of_another: Some(sentence.clone()), ..refused(row.clone(), sentence.clone()) }
+                LedgerRow { of_another: Some(sentence.clone()), ..refused_row(row.clone(), sentence.clone()) }
             }
-            (None, None) => calibrated(station, found, row.clone(), prior),
+            (None, None) => calibrate_robot(station, found, row.clone(), prior),
         };
         if own.send((at, done)).is_err() {
             return;
@@ -220,7 +221,7 @@ fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> 
     if row.exit >= REFUSED {
         return row;
     }
-    match exchanged(station, &row, ledger) {
+    match find_exchanged_robot(station, &row, ledger) {
         Some(sentence) => LedgerRow {
             exit: row.exit.max(WORSE),
             reason: Some(sentence.clone()),
@@ -235,14 +236,14 @@ fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> 
 const REFUSED: u8 = 2;
 
 /// Inputs that all robots share.
-struct Shared {
+struct SharedInputs {
     /// SHA-256 of models and settings.
     sha256: BTreeMap<String, String>,
     /// Estimate of the line's next robot, as options.
     prior: Vec<OsString>,
 }
 
-impl Shared {
+impl SharedInputs {
     fn read(station: &Station) -> Result<Self> {
         let files = station.models.values().chain(&station.settings).chain(&station.prior);
         let sha256 = Inputs::checksums(files.map(PathBuf::as_path))?;
@@ -260,12 +261,12 @@ impl Shared {
                 prior.push(format!("--{}={text}", entry.key).into());
             }
         }
-        Ok(Shared { sha256, prior })
+        Ok(SharedInputs { sha256, prior })
     }
 }
 
 /// A row before its calibration.
-fn begun(station: &Station, found: &Found, shared: &Shared) -> LedgerRow {
+fn initial_row(station: &Station, found: &InboxFile, shared: &SharedInputs) -> LedgerRow {
     let by_prior = station.prior.is_some() && !Station::is_in_full(&found.serial);
     let files = found.model(station).into_iter().chain(&station.settings);
     let files = files.chain(station.prior.iter().filter(|_| by_prior));
@@ -288,30 +289,30 @@ fn begun(station: &Station, found: &Found, shared: &Shared) -> LedgerRow {
     }
 }
 
-fn refused(row: LedgerRow, sentence: String) -> LedgerRow {
+fn refused_row(row: LedgerRow, sentence: String) -> LedgerRow {
     LedgerRow { exit: REFUSED, reason: Some(sentence), ..row }
 }
 
 /// Calibrates a robot by a process of its own.
-fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsString]) -> LedgerRow {
+fn calibrate_robot(station: &Station, found: &InboxFile, row: LedgerRow, prior: &[OsString]) -> LedgerRow {
     if let Some(fault) = found.fault() {
-        return refused(row, fault);
+        return refused_row(row, fault);
     }
     let Some(model) = found.model(station) else {
         let message = format!("found a robot of type `{}`, expected one that `models` names", found.of_type);
-        return refused(row, message);
+        return refused_row(row, message);
     };
     let results = found.results(station);
     if let Some(parent) = results.parent()
         && let Err(error) = poecal_storage::disk::create_folders(parent)
     {
-        return refused(row, format!("the folder of the results cannot be made ({error})"));
+        return refused_row(row, format!("the folder of the results cannot be made ({error})"));
     }
     let mut words: Vec<OsString> = vec!["calibrate".into(), model.into(), found.path.clone().into()];
     words.extend(["--out".into(), results.clone().into_os_string()]);
     // A process of a killed fleet run may still be at work on this robot.
     words.extend(["--force", "--quiet", "--threads", "1", "--wait", "120s"].map(OsString::from));
-    words.extend(limits::stated().into_iter().map(|it| format!("--limit={it}").into()));
+    words.extend(limits::list_changed().into_iter().map(|it| format!("--limit={it}").into()));
     if let Some(settings) = &station.settings {
         words.extend(["--settings".into(), settings.clone().into_os_string()]);
     }
@@ -321,7 +322,7 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     if row.by_prior {
         words.extend(prior.iter().cloned());
     }
-    let (code, said) = ran(words);
+    let (code, said) = run_program(words);
     let sentence = || {
         // The path as in the ledger, independent of the current folder.
         let said = said.replace(&found.path.display().to_string(), &row.file);
@@ -332,13 +333,13 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
         return LedgerRow { exit: code, reason: Some(sentence()), ..row };
     }
     match CalibrationFile::read(results.join("calibration.json")) {
-        Ok(file) => LedgerRow { exit: code, ..row.with(&file) },
+        Ok(file) => LedgerRow { exit: code, ..row.with_findings(&file) },
         Err(error) => LedgerRow { exit: 3, reason: Some(error.to_string()), ..row },
     }
 }
 
 /// Runs the program with these words, and returns its code and its error messages. Within another program, such as Python, it runs in this process.
-fn ran(words: Vec<OsString>) -> (u8, String) {
+fn run_program(words: Vec<OsString>) -> (u8, String) {
     let own = std::env::current_exe().ok();
     let is_own =
         own.as_ref().and_then(|it| it.file_stem()?.to_str()).is_some_and(|stem| stem.starts_with("poecal"));
@@ -370,19 +371,19 @@ fn report_of(options: &FleetReport, console: &Console) -> Result<u8> {
     let station = Station::read(&options.station)?;
     let page = options.out.clone().unwrap_or_else(|| options.station.with_file_name("fleet.html"));
     let table = page.with_extension("csv");
-    let existing = Existing::forced(options.force);
+    let existing = ExistingFiles::from_switch(options.force);
     let inputs = [options.station.as_path(), station.ledger.as_path()];
-    let place = FilePlace::reserve(&page, existing, &inputs, &mut console.warner())?;
-    let beside = FilePlace::reserve(&table, existing, &inputs, &mut console.warner())?;
+    let place = ReservedFile::reserve(&page, existing, &inputs, &mut console.warner())?;
+    let beside = ReservedFile::reserve(&table, existing, &inputs, &mut console.warner())?;
     let mut rows = rows(&station, &options.ledger)?;
     // Links of the page are from its folder.
     let folder = page.parent().unwrap_or(Path::new(""));
     for row in &mut rows {
         let results = &station.folder.join(&row.results);
         let from_here = results.strip_prefix(folder).map(Path::to_owned);
-        row.results = from_here.unwrap_or_else(|_| actual(results)).display().to_string();
+        row.results = from_here.unwrap_or_else(|_| canonical_path(results)).display().to_string();
     }
-    let line = report::Line::from_rows(rows, station.reference.as_deref(), &station.limits)
+    let line = report::FleetLine::from_rows(rows, station.reference.as_deref(), &station.limits)
         .map_err(|error| error.in_file(&station.path))?;
     place.write(report::fleet_page(&line))?;
     beside.write(vec![line.csv().into()])?;

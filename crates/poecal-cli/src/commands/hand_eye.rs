@@ -13,12 +13,12 @@ use poecal_results::hand_eye::{ArmByJoints, FrameNames, HandEyeResult};
 use poecal_results::output::Contents;
 use poecal_storage::named_files::refuse_repeats;
 
-use super::frames::{Frames, model, row_name};
-use super::typed::{command, shell_word};
-use crate::args::HandEye;
+use super::frames::{FramesOutput, model, row_name};
+use super::reproducing_command::{command, shell_word};
+use crate::args::HandEyeArgs;
 use crate::console::Console;
 
-pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Console) -> Result<u8> {
+pub(crate) fn hand_eye(arguments: &HandEyeArgs, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.poses)?;
     let place = arguments.out.reserve(Contents::HandEye, &arguments.inputs(), console)?;
     let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
@@ -47,7 +47,7 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
         .unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::from_robot));
     let result =
         HandEyeResult { found: &found, poses: &poses, names: &names, command: &command, arm: arm.as_ref() };
-    let found = Frames {
+    let found = FramesOutput {
         json: ("hand_eye.json", result.to_text()?),
         table: report::hand_eye(&result),
         texts: result.texts(),
@@ -57,13 +57,18 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
 }
 
 /// Additional results from the joint readings of the poses.
-fn by_joints(robot: &Robot, poses: &PosePairs, found: &Found, arguments: &HandEye) -> Result<ArmByJoints> {
+fn by_joints(
+    robot: &Robot,
+    poses: &PosePairs,
+    found: &Found,
+    arguments: &HandEyeArgs,
+) -> Result<ArmByJoints> {
     let data = session_of(robot, &poses.joints, &poses.target, found)?;
     ArmByJoints::new((robot, &data), found, arm_too(robot, &data), with_arm(arguments))
 }
 
 /// The command that fits the arm with the camera: from the same pixels, or from the session that is written with --out.
-fn with_arm(arguments: &HandEye) -> String {
+fn with_arm(arguments: &HandEyeArgs) -> String {
     let mut words = vec!["poecal".to_owned(), "calibrate".to_owned()];
     words.extend(arguments.robot.iter().map(|it| it.display().to_string()));
     let chain = &arguments.chain;
@@ -85,7 +90,7 @@ fn with_arm(arguments: &HandEye) -> String {
 }
 
 /// Refuses a direction for poses that have none.
-fn refuse_without_use(arguments: &HandEye) -> Result<()> {
+fn refuse_without_use(arguments: &HandEyeArgs) -> Result<()> {
     if arguments.robot.is_some() && arguments.flange.is_some() {
         return ErrorKind::Option
             .refuse("found --flange beside --robot, expected one of the two: by joint readings the arm's poses are base from flange");
@@ -94,7 +99,7 @@ fn refuse_without_use(arguments: &HandEye) -> Result<()> {
 }
 
 /// Refuses options of corners without corners, and options of poses with corners.
-fn refuse_unread(arguments: &HandEye, is_of_corners: bool) -> Result<()> {
+fn refuse_unread(arguments: &HandEyeArgs, is_of_corners: bool) -> Result<()> {
     if is_of_corners && arguments.target.is_some() {
         return ErrorKind::Option
             .refuse("found --target beside corners in pixels, expected one of the two: by corners the target's poses are camera from target");

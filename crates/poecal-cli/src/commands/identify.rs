@@ -11,10 +11,10 @@ use poecal_storage::named_files::refuse_repeats;
 
 use super::models::read_model;
 use crate::DONE;
-use crate::args::Plan;
+use crate::args::PlanArgs;
 use crate::console::Console;
 
-pub(super) fn identify(arguments: &Plan, console: &Console) -> Result<u8> {
+pub(super) fn identify(arguments: &PlanArgs, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.rows)?;
     let options = arguments.columns.options().and_then(|options| arguments.cameras.add(options));
     let model = read_model(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?, console)?;

@@ -5,16 +5,16 @@ use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
 use poecal_import as measurements;
-use poecal_import::{Frames, Join, MeasurementFile, PlaneContact};
+use poecal_import::{FrameGrouping, Join, MeasurementFile, PlaneContact};
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_storage::disk;
-use poecal_storage::named_files::{actual, refuse_repeats};
+use poecal_storage::named_files::{canonical_path, refuse_repeats};
 
 use super::models::read_model;
 use crate::args::{CONTACT, FRAMES, Import, JOIN, word_of};
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{label_paragraph, printable_path};
 
 pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     let (Some(path), false) = (&arguments.model, arguments.measurements.is_empty()) else {
@@ -36,31 +36,39 @@ pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     let inputs: Vec<&Path> =
         (std::iter::once(path).chain(&arguments.measurements).map(PathBuf::as_path)).chain(meaning).collect();
     refuse_repeats(&arguments.measurements)?;
-    let existing = Existing::forced(arguments.force);
-    let place = FilePlace::reserve(&arguments.out, existing, &inputs, &mut console.warner())?;
+    let existing = ExistingFiles::from_switch(arguments.force);
+    let place = ReservedFile::reserve(&arguments.out, existing, &inputs, &mut console.warner())?;
     let beside = arguments.out.with_extension("map.toml");
-    let map_place = FilePlace::reserve(&beside, existing, &inputs, &mut console.warner())?;
+    let map_place = ReservedFile::reserve(&beside, existing, &inputs, &mut console.warner())?;
     let options = arguments.reading.options()?;
     let model = read_model(path, &arguments.chain.selection(Some(&options))?, console)?;
     let file = measurements::read(&arguments.measurements, &model.robot, &model.reads(options))?;
     console.said_of(&file);
     let table = measurements::imported_table(&file, &model.robot)?;
-    console.warnings(&changed(&known, &file));
+    console.warnings(&describe_changed_files(&known, &file));
     let map = map(arguments, path, &file);
     place.write(vec![table.into()])?;
     map_place.write(vec![map.into()])?;
     let rows = file.data.len();
-    let text = labelled("written", &format!("{}, {}", shown(&arguments.out), shown(&beside)))
-        + &labelled("rows", &format!("{rows} of {} files", arguments.measurements.len()))
-        + &labelled("calibrate", &format!("poecal calibrate {} {}", shown(path), shown(&arguments.out)))
-        + &labelled("again", &format!("poecal import --settings {} --out FILE", shown(&beside)));
+    let text = label_paragraph(
+        "written",
+        &format!("{}, {}", printable_path(&arguments.out), printable_path(&beside)),
+    ) + &label_paragraph("rows", &format!("{rows} of {} files", arguments.measurements.len()))
+        + &label_paragraph(
+            "calibrate",
+            &format!("poecal calibrate {} {}", printable_path(path), printable_path(&arguments.out)),
+        )
+        + &label_paragraph(
+            "again",
+            &format!("poecal import --settings {} --out FILE", printable_path(&beside)),
+        );
     Ok(console.say_of(&text, &arguments.out))
 }
 
 /// The interpretation of the files, as settings that read them again in the same form.
 fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     let folder = arguments.out.parent().unwrap_or(Path::new(""));
-    let here = |path: &Path| quoted(&relative(folder, path).display().to_string());
+    let here = |path: &Path| quote_toml(&relative_path(folder, path).display().to_string());
     let mut out = String::from(
         "# How the files of this table were read. The same files and these settings make it again, byte by byte:\n",
     );
@@ -80,10 +88,11 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     };
     let (reading, chain) = (&arguments.reading, &arguments.chain);
     let meaning = &reading.meaning;
-    text("base_link", chain.chain.base_link.as_deref().map(quoted));
-    text("tip_link", chain.chain.tip_link.as_deref().map(quoted));
+    text("base_link", chain.chain.base_link.as_deref().map(quote_toml));
+    text("tip_link", chain.chain.tip_link.as_deref().map(quote_toml));
     let pairs = |pairs: &[(String, String)]| {
-        let all: Vec<String> = pairs.iter().map(|(name, link)| quoted(&format!("{name}={link}"))).collect();
+        let all: Vec<String> =
+            pairs.iter().map(|(name, link)| quote_toml(&format!("{name}={link}"))).collect();
         (!all.is_empty()).then(|| format!("[{}]", all.join(", ")))
     };
     text("instrument", pairs(&chain.instrument));
@@ -92,25 +101,26 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     text("strict", meaning.strict.then(|| "true".to_owned()));
     text(
         "device_frames",
-        (meaning.device_frames == Frames::PerFile).then(|| quoted(word_of(FRAMES, &meaning.device_frames))),
+        (meaning.device_frames == FrameGrouping::PerFile)
+            .then(|| quote_toml(word_of(FRAMES, &meaning.device_frames))),
     );
     text(
         "contact",
-        (meaning.contact == PlaneContact::Flush).then(|| quoted(word_of(CONTACT, &meaning.contact))),
+        (meaning.contact == PlaneContact::Flush).then(|| quote_toml(word_of(CONTACT, &meaning.contact))),
     );
-    text("train_where", reading.train_where.as_deref().map(quoted));
+    text("train_where", reading.train_where.as_deref().map(quote_toml));
     // Recognised values are stated.
-    text("join", meaning.join.or(file.join).map(|join| quoted(word_of(JOIN, &join))));
+    text("join", meaning.join.or(file.join).map(|join| quote_toml(word_of(JOIN, &join))));
     let units = meaning.columns.units.clone().map_or_else(
         || file.is_in_degrees.then(|| "deg".to_owned()),
         |stated| Some(if file.is_in_degrees { format!("{stated},deg") } else { stated }),
     );
-    text("units", units.as_deref().map(quoted));
-    text("lag", meaning.lag.map(|lag| quoted(&format!("{}s+-{}s", lag.lag_s, lag.off_s))));
-    text("sheet", meaning.sheet.as_deref().map(quoted));
-    let topics: Vec<String> = meaning.topic.iter().map(|it| quoted(it)).collect();
+    text("units", units.as_deref().map(quote_toml));
+    text("lag", meaning.lag.map(|lag| quote_toml(&format!("{}s+-{}s", lag.lag_s, lag.off_s))));
+    text("sheet", meaning.sheet.as_deref().map(quote_toml));
+    let topics: Vec<String> = meaning.topic.iter().map(|it| quote_toml(it)).collect();
     text("topic", (!topics.is_empty()).then(|| format!("[{}]", topics.join(", "))));
-    text("body", meaning.body.as_deref().map(quoted));
+    text("body", meaning.body.as_deref().map(quote_toml));
     describe(&mut out, file);
     out
 }
@@ -144,7 +154,8 @@ fn describe(out: &mut String, file: &MeasurementFile) {
 fn known_inputs(settings: &Path) -> Vec<(String, String)> {
     let mut text = String::new();
     // Their messages were printed before.
-    if disk::here().open(settings).and_then(|it| it.take(LARGEST).read_to_string(&mut text)).is_err() {
+    if disk::current_disk().open(settings).and_then(|it| it.take(LARGEST).read_to_string(&mut text)).is_err()
+    {
         return Vec::new();
     }
     let mut found = Vec::new();
@@ -160,7 +171,7 @@ fn known_inputs(settings: &Path) -> Vec<(String, String)> {
 }
 
 /// Warnings of files that have changed since.
-fn changed(known: &[(String, String)], file: &MeasurementFile) -> Vec<String> {
+fn describe_changed_files(known: &[(String, String)], file: &MeasurementFile) -> Vec<String> {
     let base = |name: &str| Path::new(name).file_name().map(ToOwned::to_owned);
     let is_other = |(path, sha256): &(&String, &String)| {
         let mut same = known.iter().filter(|it| base(&it.0) == base(path)).peekable();
@@ -183,7 +194,7 @@ const LARGEST: u64 = 1 << 24;
 const SHA256: &str = "#   SHA-256 ";
 
 /// A text of TOML.
-fn quoted(text: &str) -> String {
+fn quote_toml(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
@@ -192,9 +203,9 @@ fn shown_name(path: &Path) -> String {
 }
 
 /// A path relative to a folder, with `/` in it.
-fn relative(folder: &Path, path: &Path) -> PathBuf {
+fn relative_path(folder: &Path, path: &Path) -> PathBuf {
     let home = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let (home, whole) = (actual(home), actual(path));
+    let (home, whole) = (canonical_path(home), canonical_path(path));
     let (mut own, mut other) = (home.components().peekable(), whole.components().peekable());
     while own.peek().is_some() && own.peek() == other.peek() {
         own.next();

@@ -6,13 +6,13 @@ use poecal_import::{ColumnGuess, guess_columns, pose_table};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::model::Model;
-use poecal_results::output::{Contents, Existing, FolderPlace, Project, write_project, write_texts};
+use poecal_results::output::{Contents, ExistingFiles, Project, ReservedFolder, write_project, write_texts};
 
 use super::models::read_model;
 use crate::DONE;
 use crate::args::Init;
 use crate::console::Console;
-use crate::style::{self, labelled, shown};
+use crate::style::{self, label_paragraph, printable_path};
 
 pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     if let Some(camera) = arguments.hand_eye {
@@ -37,16 +37,17 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
         count: arguments.count as usize,
         seed: arguments.seed,
     };
-    let (contents, existing) = (Contents::Project, Existing::Kept);
-    let place = FolderPlace::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
+    let (contents, existing) = (Contents::Project, ExistingFiles::Kept);
+    let place = ReservedFolder::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
     let written = write_project(place, &project)?;
     console.warnings(&written.notes);
     console.warnings(&Vec::from_iter(model.robot.placeholder_limits()));
     let next = format!(
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
-        shown(&written.folder.join("README.md"))
+        printable_path(&written.folder.join("README.md"))
     );
-    let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
+    let words =
+        style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }
 
@@ -57,8 +58,13 @@ fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console:
         console.data(&report::json(&guess)?)?;
         return Ok(DONE);
     }
-    let place =
-        FolderPlace::reserve(&arguments.out, Contents::Project, Existing::Kept, &[], &mut console.warner())?;
+    let place = ReservedFolder::reserve(
+        &arguments.out,
+        Contents::Project,
+        ExistingFiles::Kept,
+        &[],
+        &mut console.warner(),
+    )?;
     let ColumnGuess { mapping, missing, .. } = guess;
     let written = write_texts(place, ("columns.toml", mapping), Vec::new())?;
     if !missing.is_empty() {
@@ -69,11 +75,12 @@ fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console:
     }
     let next = format!(
         "look it over, then poecal check {} {} --columns {}",
-        shown(model),
-        shown(file),
-        shown(&written.folder.join("columns.toml"))
+        printable_path(model),
+        printable_path(file),
+        printable_path(&written.folder.join("columns.toml"))
     );
-    let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
+    let words =
+        style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }
 
@@ -84,11 +91,12 @@ fn table(
     words: &str,
     console: &Console,
 ) -> Result<u8> {
-    let (contents, existing) = (Contents::Project, Existing::Kept);
-    let place = FolderPlace::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
+    let (contents, existing) = (Contents::Project, ExistingFiles::Kept);
+    let place = ReservedFolder::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
     let written = write_texts(place, (name, text), Vec::new())?;
-    let file = shown(&written.folder.join(name));
+    let file = printable_path(&written.folder.join(name));
     let next = format!("fill in a row for each pose, and run `poecal {}`", words.replace("{}", &file));
-    let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
+    let words =
+        style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }

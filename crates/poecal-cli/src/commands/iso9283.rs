@@ -13,15 +13,16 @@ use poecal_results::validation::ValidationInputs;
 use poecal_storage::named_files::refuse_repeats;
 
 use super::frames::model;
-use super::typed::command;
-use crate::args::Iso9283;
+use super::reproducing_command::command;
+use crate::args::Iso9283Args;
 use crate::console::Console;
 use crate::{DONE, WORSE};
 
-pub(crate) fn iso9283(arguments: &Iso9283, typed: &[OsString], console: &Console) -> Result<u8> {
+pub(crate) fn iso9283(arguments: &Iso9283Args, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let place = arguments.place.reserve(&arguments.inputs(), console)?;
-    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record =
+        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
     let options = TestOptions {
         reading: arguments.meaning.options()?,
@@ -43,7 +44,7 @@ pub(crate) fn iso9283(arguments: &Iso9283, typed: &[OsString], console: &Console
 }
 
 /// The files of a test.
-fn inputs(arguments: &Iso9283, typed: &[OsString], file: &TestFile) -> Result<ValidationInputs> {
+fn inputs(arguments: &Iso9283Args, typed: &[OsString], file: &TestFile) -> Result<ValidationInputs> {
     let robot = arguments.robot.as_deref();
     let sha256: BTreeMap<_, _> = Inputs::checksums(robot.into_iter())?;
     Ok(ValidationInputs {

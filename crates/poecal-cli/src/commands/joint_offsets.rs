@@ -2,12 +2,12 @@
 
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::{JointKind, Robot};
-use poecal_numerics::error::{ErrorKind, Result, nearest};
+use poecal_numerics::error::{ErrorKind, Result, nearest_word};
 use poecal_numerics::unit::Unit;
 use poecal_results::model::Model;
 
 use crate::console::Console;
-use crate::quantity::signed;
+use crate::quantity::parse_signed;
 
 /// The model with offsets of its joints in the screws, and a warning if others follow such a joint.
 pub(super) fn with_offsets(model: Model, stated: &[String], console: &Console) -> Result<Model> {
@@ -22,7 +22,7 @@ pub(super) fn with_offsets(model: Model, stated: &[String], console: &Console) -
                 "--offset: joint `{}` alone is moved, not {}, which follows its reading; if its encoder is off, so are these, by \
                  their multiplier: state their offsets too",
                 joint.name,
-                quoted(&followers)
+                quote_names(&followers)
             ));
         }
     }
@@ -45,7 +45,7 @@ fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
             JointKind::Revolute => Unit::Radian,
             JointKind::Prismatic => Unit::Metre,
         };
-        let value = signed(value, quantity).map_err(|error| bad(format!("joint `{name}`: {error}")))?;
+        let value = parse_signed(value, quantity).map_err(|error| bad(format!("joint `{name}`: {error}")))?;
         if offset.replace(value).is_some() {
             return Err(bad(format!("found joint `{name}` twice, expected one offset a joint")));
         }
@@ -54,13 +54,13 @@ fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
 }
 
 /// Names for a message.
-pub(super) fn quoted(names: &[&str]) -> String {
+pub(super) fn quote_names(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn unknown_joint(name: &str, robot: &Robot) -> String {
     let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let hint = nearest(name, names.iter().copied())
+    let hint = nearest_word(name, names.iter().copied())
         .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "))
 }

@@ -3,6 +3,7 @@
 mod calibrate;
 mod certificate;
 mod check;
+mod check_history;
 mod compare;
 mod compensate;
 mod export;
@@ -14,20 +15,19 @@ mod identify;
 mod import;
 mod init;
 mod iso9283;
-mod itself;
 mod joint_offsets;
-mod kept;
 mod models;
 mod offsets;
 #[cfg(any(unix, windows))]
 mod pictures;
 mod plan;
 mod predict;
+mod program_commands;
 mod report;
+mod reproducing_command;
 mod simulate;
 mod tcp;
 mod track;
-mod typed;
 mod validate;
 mod visits;
 mod watch;
@@ -35,7 +35,7 @@ mod watch;
 #[cfg(any(unix, windows))]
 use pictures::{detect, photograph};
 
-use itself::{completions, man, reproduce, schema};
+use program_commands::{completions, man, reproduce, schema};
 
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;

@@ -8,12 +8,12 @@ use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::offsets::ModelOffsets;
 
-use super::joint_offsets::quoted;
+use super::joint_offsets::quote_names;
 use crate::DONE;
-use crate::args::{Offsets, OuterFrame};
+use crate::args::{OffsetsArgs, OuterFrame};
 use crate::console::Console;
 
-pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
+pub(crate) fn offsets(arguments: &OffsetsArgs, console: &Console) -> Result<u8> {
     let place = arguments.place.reserve(&[&arguments.nominal, &arguments.actual], console)?;
     let selection = arguments.chain.selection();
     let nominal = Model::read(&arguments.nominal, &selection)?;
@@ -22,9 +22,10 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
-    let stated = [arguments.stated(OuterFrame::Base)?, arguments.stated(OuterFrame::Tip)?];
-    let explanation =
-        ModelOffsets::between(&nominal, &actual, stated).map_err(|error| error.in_file(&arguments.actual))?;
+    let stated =
+        [arguments.stated_constraint(OuterFrame::Base)?, arguments.stated_constraint(OuterFrame::Tip)?];
+    let explanation = ModelOffsets::from_robots(&nominal, &actual, stated)
+        .map_err(|error| error.in_file(&arguments.actual))?;
     for joint in &nominal.robot.joints {
         let followers = nominal.robot.followers(&joint.name);
         if !followers.is_empty() {
@@ -32,7 +33,7 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
                 "joint `{}` is read for {} too: each offset is that of the joint's own value, and an error of this encoder is in all of \
                  them",
                 joint.name,
-                quoted(&followers)
+                quote_names(&followers)
             ));
         }
     }

@@ -7,43 +7,43 @@ use poecal_fit::analysis::PlannedSession;
 use poecal_import::{ReadOptions, planned_table, read_joints, test_table};
 use poecal_model::measurement::Noise;
 use poecal_model::robot::Tolerance;
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_plan::plan::{
-    CYCLE, Conditions, PlanOptions, PlannedFit, PlannedRow, RowPart, Sight, plan as planned, test_cube,
-    workspace_in,
+    CYCLE, Conditions, DeviceView, PlanOptions, PlannedFit, PlannedRow, RowPurpose, plan as planned,
+    test_cube, workspace_in,
 };
 use poecal_report as report;
 use poecal_results::model::Model;
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_results::plan_program::plan_program;
 use poecal_results::shapes::capsules_of;
 
 use super::identify::identify;
 use super::models::read_model;
-use super::visits::{Stated, Visited};
+use super::visits::{VisitSettings, VisitedCalibration};
 use crate::DONE;
-use crate::args::{FitArgs, OutFile, Plan, PlannedDevice};
+use crate::args::{FitArgs, PlanArgs, PlannedDevice, TextOutput};
 use crate::console::Console;
-use crate::quantity::{BelievedTolerance, Workspace};
-use crate::style::{labelled, shown};
+use crate::quantity::{BelievedTolerance, WorkspaceChoice};
+use crate::style::{label_paragraph, printable_path};
 
-pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
+pub(crate) fn plan(arguments: &PlanArgs, console: &Console) -> Result<u8> {
     if !arguments.rows.is_empty() {
         return identify(arguments, console);
     }
     refuse_pictures(arguments)?;
-    chosen(arguments, console)
+    choose_configurations(arguments, console)
 }
 
 /// Chooses configurations.
-fn chosen(arguments: &Plan, console: &Console) -> Result<u8> {
+fn choose_configurations(arguments: &PlanArgs, console: &Console) -> Result<u8> {
     let files = arguments.candidates.iter().chain(&arguments.keep_rows).map(PathBuf::as_path);
     let files = files.chain(arguments.visits.reference.iter().map(PathBuf::as_path));
     let inputs: Vec<_> = std::iter::once(arguments.model.as_path()).chain(files).collect();
     let place = arguments.place.reserve(&inputs, console)?;
-    let existing = Existing::forced(arguments.place.force);
-    let reserved = |path: &PathBuf| FilePlace::reserve(path, existing, &inputs, &mut console.warner());
+    let existing = ExistingFiles::from_switch(arguments.place.force);
+    let reserved = |path: &PathBuf| ReservedFile::reserve(path, existing, &inputs, &mut console.warner());
     let program = arguments.program.as_ref().map(reserved).transpose()?;
     match arguments.purpose.as_deref() {
         Some("iso9283") => return iso9283(arguments, place, program, console),
@@ -61,14 +61,14 @@ fn chosen(arguments: &Plan, console: &Console) -> Result<u8> {
     for path in &arguments.keep_rows {
         let joints = read_joints(path, &model.robot, &reading)?;
         console.warnings(&joints.warnings);
-        kept.extend(joints.planned());
+        kept.extend(joints.planned_rows());
     }
     let rows = kept.len();
     let replaced = replaced_rows(&arguments.replace_rows, rows)?;
     let workspace = match &arguments.workspace {
-        Workspace::Limits => None,
-        Workspace::Tasks(path) => Some(read(path)?),
-        Workspace::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
+        WorkspaceChoice::Limits => None,
+        WorkspaceChoice::Tasks(path) => Some(read(path)?),
+        WorkspaceChoice::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
     let fit = fit(&arguments.fit, &model, arguments.kind, arguments.count)?;
     let options = PlanOptions {
@@ -84,7 +84,7 @@ fn chosen(arguments: &Plan, console: &Console) -> Result<u8> {
         ..PlanOptions::default()
     };
     let found = planned(&model.robot, &options)?;
-    let report = report::Plan::new(&model, &options, &found, arguments.stop.as_secs_f64());
+    let report = report::PlanReport::new(&model, &options, &found, arguments.stop.as_secs_f64());
     let table = planned_table(&model.robot, &found)?;
     let as_program = arguments.program.as_ref();
     let as_program = as_program.map(|path| plan_program(path, &model.robot, &found.rows)).transpose()?;
@@ -99,7 +99,7 @@ fn chosen(arguments: &Plan, console: &Console) -> Result<u8> {
 }
 
 /// Refuses pictures that no rows name.
-fn refuse_pictures(arguments: &Plan) -> Result<()> {
+fn refuse_pictures(arguments: &PlanArgs) -> Result<()> {
     if arguments.cameras.files().next().is_some() || !arguments.cameras.markers.is_empty() {
         return ErrorKind::Option.refuse("found --camera or --markers without --rows, expected both with pictures that were taken, --rows FILE");
     }
@@ -118,9 +118,9 @@ fn replaced_rows(replace: &[u32], rows: usize) -> Result<Vec<usize>> {
 
 /// The poses of a test of ISO 9283.
 fn iso9283(
-    arguments: &Plan,
-    place: Option<FilePlace>,
-    program: Option<FilePlace>,
+    arguments: &PlanArgs,
+    place: Option<ReservedFile>,
+    program: Option<ReservedFile>,
     console: &Console,
 ) -> Result<u8> {
     let visits = &arguments.visits;
@@ -132,9 +132,9 @@ fn iso9283(
         );
     }
     let stated = match &arguments.workspace {
-        Workspace::Limits => None,
-        Workspace::Box(corners) => Some(*corners),
-        Workspace::Tasks(_) => {
+        WorkspaceChoice::Limits => None,
+        WorkspaceChoice::Box(corners) => Some(*corners),
+        WorkspaceChoice::Tasks(_) => {
             return ErrorKind::Option
                 .refuse("--workspace: found a file, expected a cube with --purpose iso9283, like 800,-200,300:1200,200,700mm");
         }
@@ -144,7 +144,7 @@ fn iso9283(
     let cube = test_cube(&model.robot, stated, arguments.conditions.floor_height)?;
     let cycles = arguments.count as usize;
     let order = CYCLE.iter().filter_map(|&at| Some(cube.poses.get(at)?.1.clone()));
-    let part = RowPart::Fit;
+    let part = RowPurpose::Fit;
     let one: Vec<PlannedRow> =
         order.map(|readings| PlannedRow { readings, part, returns: false, candidate: None }).collect();
     let rows: Vec<PlannedRow> = (0..cycles).flat_map(|_| one.clone()).collect();
@@ -164,13 +164,13 @@ fn iso9283(
 }
 
 /// Configurations of visits to a calibrated robot.
-fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Result<u8> {
+fn visits(arguments: &PlanArgs, place: Option<ReservedFile>, console: &Console) -> Result<u8> {
     let links = &arguments.chain.chain;
     let has_links = links.base_link.is_some() || links.tip_link.is_some();
     if has_links
         || arguments.program.is_some()
         || arguments.conditions.floor_height.is_some()
-        || !matches!(arguments.workspace, Workspace::Limits)
+        || !matches!(arguments.workspace, WorkspaceChoice::Limits)
     {
         return ErrorKind::Option
             .refuse("found --workspace, --program, --floor-height or links with --purpose drift, expected none of them: a calibration.json has its configurations");
@@ -183,7 +183,7 @@ fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Resu
                 .refuse("--device: found a place, expected known or refit with --purpose drift");
         }
     };
-    let stated = Stated {
+    let stated = VisitSettings {
         calibration: &arguments.model,
         reference: &arguments.visits.reference,
         meaning: arguments.columns.options()?,
@@ -191,17 +191,17 @@ fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Resu
         tool_is_anew: arguments.visits.tool.unwrap_or(false),
         repeatability_m: arguments.visits.repeatability,
     };
-    let visited = Visited::read(stated, console)?;
+    let visited = VisitedCalibration::read(stated, console)?;
     let count = arguments.count as usize;
-    let (told, table) = visited.planned("--purpose drift", count, None, arguments.candidates.as_ref())?;
+    let (told, table) = visited.plan_visit("--purpose drift", count, None, arguments.candidates.as_ref())?;
     let text = if arguments.json { report::json(&told)? } else { told.text() };
     deliver(&arguments.place, (table, place), (text, arguments.json), console)
 }
 
 /// Delivers a list and its remarks.
 fn deliver(
-    out: &OutFile,
-    (table, place): (String, Option<FilePlace>),
+    out: &TextOutput,
+    (table, place): (String, Option<ReservedFile>),
     (mut text, is_json): (String, bool),
     console: &Console,
 ) -> Result<u8> {
@@ -213,7 +213,7 @@ fn deliver(
         console.data(&text)?;
     } else if written {
         if let Some(path) = &out.out {
-            text.push_str(&labelled("written", &shown(path)));
+            text.push_str(&label_paragraph("written", &printable_path(path)));
         }
         console.say(&text)?;
     } else {
@@ -237,7 +237,7 @@ pub(super) fn readings(
 }
 
 /// The planned fit of so many configurations of a kind.
-pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) -> Result<PlannedFit> {
+pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: SessionKind, count: u32) -> Result<PlannedFit> {
     let tolerance = match &arguments.tolerance {
         BelievedTolerance::None => Some(Tolerance::WIDE),
         BelievedTolerance::Given(tolerance) => Some(*tolerance),
@@ -261,7 +261,7 @@ pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) ->
 }
 
 /// Conditions on a configuration.
-fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Conditions> {
+fn conditions(arguments: &PlanArgs, model: &Model, console: &Console) -> Result<Conditions> {
     let it = &arguments.conditions;
     let (capsules, notes) = if it.self_collision { capsules_of(model) } else { Default::default() };
     notes.iter().for_each(|note| console.remark(note));
@@ -274,7 +274,7 @@ fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Cond
         Some(PlannedDevice::At(place)) => Some(place),
         None => None,
     };
-    let sight = device.map(|place| Sight {
+    let sight = device.map(|place| DeviceView {
         place: place.into(),
         cone: it.device_half_angle.map(|half| (it.device_aim.unwrap_or_default().into(), half)),
         distance_m: it.distance.unwrap_or([0.0, f64::INFINITY]),

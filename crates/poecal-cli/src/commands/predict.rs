@@ -25,11 +25,11 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let has_links =
         !["toml", "json"].map(OsStr::new).contains(&arguments.model.extension().unwrap_or_default());
     let mounted = target.filter(|target| has_links && target.contains('=')).map(named_link).transpose()?;
-    let selection = arguments.chain.selection().joined(&[], mounted.as_slice())?;
+    let selection = arguments.chain.selection().join(&[], mounted.as_slice())?;
     let model = read_model(&arguments.model, &with_mapping(selection, options.as_ref().ok())?, console)?;
     let model = match arguments.of {
         AcceptedModel::Corrected => {
-            let corrected = model.corrected()?;
+            let corrected = model.corrected_model()?;
             if !corrected.robot.terms.iter().all(|it| it.coefficient == 0.0)
                 && corrected.robot.gravity.is_some()
             {

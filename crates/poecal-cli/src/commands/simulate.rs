@@ -4,8 +4,8 @@ use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_model::robot::{Sizes, TermGroup};
 use poecal_model::simulate::Simulation;
 use poecal_numerics::error::Result;
-use poecal_numerics::text::visible;
-use poecal_results::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
+use poecal_numerics::text::escape_invisible;
+use poecal_results::output::{self, Contents, ExistingFiles, ReservedFolder, SimulatedSession};
 
 use super::models::read_model;
 use crate::args::{Simulate, TreeArgs};
@@ -13,8 +13,8 @@ use crate::console::Console;
 use crate::style;
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
-    let existing = Existing::forced(arguments.force);
-    let place = FolderPlace::reserve(
+    let existing = ExistingFiles::from_switch(arguments.force);
+    let place = ReservedFolder::reserve(
         &arguments.out,
         Contents::Simulation,
         existing,
@@ -57,7 +57,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     };
     let written = output::write_simulation(place, &model, &session)?;
     console.warnings(&written.notes);
-    Ok(console.say_of(&style::written(&written.folder, &written.files), &written.folder))
+    Ok(console.say_of(&style::describe_written_files(&written.folder, &written.files), &written.folder))
 }
 
 /// The command that reproduces the files: all options that they depend on, and no output folder.
@@ -94,5 +94,5 @@ fn command(arguments: &Simulate) -> String {
         words.push(format!("--held-out-count {}", arguments.held_out_count));
     }
     // The command becomes one line of a file.
-    visible(&words.join(" ")).into_owned()
+    escape_invisible(&words.join(" ")).into_owned()
 }

@@ -9,12 +9,12 @@ use poecal_report as report;
 use poecal_results::output::Contents;
 use poecal_results::tcp::ToolResult;
 
-use super::frames::{Frames, model, row_name};
-use super::typed::command;
-use crate::args::Tcp;
+use super::frames::{FramesOutput, model, row_name};
+use super::reproducing_command::command;
+use crate::args::TcpArgs;
 use crate::console::Console;
 
-pub(crate) fn tcp(arguments: &Tcp, typed: &[OsString], console: &Console) -> Result<u8> {
+pub(crate) fn tcp(arguments: &TcpArgs, typed: &[OsString], console: &Console) -> Result<u8> {
     let place = arguments.out.reserve(Contents::Tip, &arguments.inputs(), console)?;
     let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
     let poses = read_flange_poses(&arguments.poses, arguments.units, model.as_ref().map(|it| &it.robot))?;
@@ -24,7 +24,7 @@ pub(crate) fn tcp(arguments: &Tcp, typed: &[OsString], console: &Console) -> Res
         tool_tip(&poses.touches, &row_name(&poses.names)).map_err(|error| error.in_file(&arguments.poses))?;
     let command = command(typed);
     let result = ToolResult { found: &found, poses: &poses, command: &command };
-    let found = Frames {
+    let found = FramesOutput {
         json: ("tcp.json", result.to_text()?),
         table: report::tool_tip(&result),
         texts: result.texts(),

@@ -7,25 +7,26 @@ use poecal_import as measurements;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_results::record::Record;
-use poecal_results::track::{Repaired, State, recalibrate, track as judged};
-use poecal_results::validation::{ValidationInputs, now};
+use poecal_results::track::{RecalibratedJoint, RobotCondition, recalibrate, track as judged};
+use poecal_results::validation::{ValidationInputs, current_time};
 use poecal_storage::named_files::refuse_repeats;
 
-use super::kept::Kept;
-use super::typed::command;
-use super::visits::{Stated, Visited};
-use crate::args::Track;
+use super::check_history::CheckHistory;
+use super::reproducing_command::command;
+use super::visits::{VisitSettings, VisitedCalibration};
+use crate::args::TrackArgs;
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{label_paragraph, printable_path};
 use crate::{DONE, WORSE};
 
-pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) -> Result<u8> {
+pub(crate) fn track(arguments: &TrackArgs, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let (place, page) = reserve(arguments, console)?;
-    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
-    let stated = Stated {
+    let record =
+        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let stated = VisitSettings {
         calibration: &arguments.calibration,
         reference: &arguments.reference,
         meaning: arguments.meaning.options()?,
@@ -33,15 +34,15 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
         tool_is_anew: arguments.tool,
         repeatability_m: arguments.repeatability,
     };
-    let visited = Visited::read(stated, console)?;
+    let visited = VisitedCalibration::read(stated, console)?;
     if let Some(count) = arguments.plan {
         return plan(arguments, &visited, usize::from(count), place, console);
     }
-    let Visited { file, robot, meaning, options, earlier } = visited;
+    let VisitedCalibration { file, robot, meaning, options, earlier } = visited;
     let in_file = |error: poecal_numerics::error::Error| {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
-    let mut history = Kept::read(arguments.history.as_ref(), &arguments.calibration)?;
+    let mut history = CheckHistory::read(arguments.history.as_ref(), &arguments.calibration)?;
     let read = measurements::read(&arguments.measurements, &robot, &meaning)?;
     let mut sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;
     sha256.extend(read.sha256.clone());
@@ -50,7 +51,7 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     let names: Vec<String> = arguments.measurements.iter().map(|path| path.display().to_string()).collect();
     console.said_of(&read);
     if let (Some(words), Some(place)) = (&arguments.recalibrate, place) {
-        let (joint, part) = RepairedPart::named(words);
+        let (joint, part) = RepairedPart::from_name(words);
         let sources = RecalibrationSources { measurements: names, calibration, sha256 };
         let found = recalibrate(&file, &read.data, earlier.rows(), &options, (joint, part), sources)
             .map_err(in_file)?;
@@ -65,30 +66,31 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
         joins: read.joins.clone(),
         command: Some(command(typed)),
     };
-    let told = report::Track::new(&found, &file.robot.name, inputs).with_record(record);
+    let told = report::TrackReport::new(&found, &file.robot.name, inputs).with_record(record);
     if let Some(page) = page {
-        page.write(report::visit_page(&told, &file, now().as_deref()))?;
+        page.write(report::visit_page(&told, &file, current_time().as_deref()))?;
     }
     history.append(|history, time| history.append(&told, time), console)?;
     if arguments.json {
         console.data(&report::json(&told)?)?;
     } else {
-        let written = arguments.report.as_deref().map(|path| labelled("report", &shown(path)));
+        let written =
+            arguments.report.as_deref().map(|path| label_paragraph("report", &printable_path(path)));
         console.say(&(told.text() + &written.unwrap_or_default()))?;
     }
     console.warnings(&found.notes);
-    Ok(if found.state == State::Changed { WORSE } else { DONE })
+    Ok(if found.state == RobotCondition::Changed { WORSE } else { DONE })
 }
 
 /// Places of the output: of a plan or a recalibration of one joint, and of the page of a visit.
-fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, Option<FilePlace>)> {
+fn reserve(arguments: &TrackArgs, console: &Console) -> Result<(Option<ReservedFile>, Option<ReservedFile>)> {
     if arguments.out.is_some() && arguments.plan.is_none() && arguments.recalibrate.is_none() {
         return ErrorKind::Option
             .refuse("--out: found a file to write, expected it with --plan or --recalibrate alone");
     }
     let reserve = |path: &PathBuf| {
-        let existing = Existing::forced(arguments.force);
-        FilePlace::reserve(path, existing, &arguments.inputs(), &mut console.warner())
+        let existing = ExistingFiles::from_switch(arguments.force);
+        ReservedFile::reserve(path, existing, &arguments.inputs(), &mut console.warner())
     };
     Ok((
         arguments.out.as_ref().map(reserve).transpose()?,
@@ -97,8 +99,13 @@ fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, O
 }
 
 /// Writes a calibration with one joint recalibrated, and reports that.
-fn deliver(found: &Repaired, before: &CalibrationFile, place: FilePlace, console: &Console) -> Result<u8> {
-    let text = report::recalibrated(found, before);
+fn deliver(
+    found: &RecalibratedJoint,
+    before: &CalibrationFile,
+    place: ReservedFile,
+    console: &Console,
+) -> Result<u8> {
+    let text = report::describe_recalibrated(found, before);
     place.write(vec![found.file.to_text()?.into()])?;
     console.say(&text)?;
     console.warnings(&found.notes);
@@ -107,13 +114,13 @@ fn deliver(found: &Repaired, before: &CalibrationFile, place: FilePlace, console
 
 /// Chooses witness configurations, and prints their detectable shifts.
 fn plan(
-    arguments: &Track,
-    visited: &Visited,
+    arguments: &TrackArgs,
+    visited: &VisitedCalibration,
     count: usize,
-    place: Option<FilePlace>,
+    place: Option<ReservedFile>,
     console: &Console,
 ) -> Result<u8> {
-    let (told, table) = visited.planned("--plan", count, arguments.target.as_deref(), None)?;
+    let (told, table) = visited.plan_visit("--plan", count, arguments.target.as_deref(), None)?;
     if let Some(place) = place {
         place.write(vec![table.into()])?;
     }

@@ -9,23 +9,23 @@ use poecal_import::{MeasurementFile, ReadOptions};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
-use poecal_results::output::{Existing, ValidationPlaces};
+use poecal_results::output::{ExistingFiles, ValidationOutputs};
 use poecal_results::record::Record;
-use poecal_results::validation::{JudgedRows, Judging, Validation, ValidationInputs};
+use poecal_results::validation::{JudgedRows, Validation, ValidationInputs, ValidationOptions};
 use poecal_storage::named_files::refuse_repeats;
 
-use super::kept::Kept;
-use super::typed::command;
-use crate::args::{Refit, ReportPlace, Validate};
+use super::check_history::CheckHistory;
+use super::reproducing_command::command;
+use crate::args::{RefitChoice, ReportPlace, Validate};
 use crate::console::Console;
-use crate::style::{self, labelled, shown};
+use crate::style::{self, label_paragraph, printable_path};
 use crate::{DONE, WORSE};
 
 pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let places = places(arguments, console)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
-    let mut history = Kept::read(arguments.history.as_ref(), &arguments.calibration)?;
+    let mut history = CheckHistory::read(arguments.history.as_ref(), &arguments.calibration)?;
     let in_file = |error: poecal_numerics::error::Error| {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
@@ -34,20 +34,21 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let controller = file.controller.clone();
     let mut options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
     if let Some(known) = &file.pictures {
-        known.complete(&mut options).map_err(|error| error.in_file(&arguments.calibration))?;
+        known.complete_options(&mut options).map_err(|error| error.in_file(&arguments.calibration))?;
     }
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
-    let limits = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?;
-    let judging = Judging {
-        refit_frame: arguments.refit.contains(&Refit::Device),
-        refit_moved: arguments.refit.contains(&Refit::Auto),
-        refit_tool: arguments.refit.contains(&Refit::Tool),
+    let limits = AcceptanceLimits::from_choice(arguments.accept.clone(), arguments.accept_model)?;
+    let judging = ValidationOptions {
+        refit_frame: arguments.refit.contains(&RefitChoice::Device),
+        refit_moved: arguments.refit.contains(&RefitChoice::Auto),
+        refit_tool: arguments.refit.contains(&RefitChoice::Tool),
         accept: limits.as_ref(),
     };
     let sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;
     let own = sha256.get(&arguments.calibration.display().to_string()).cloned();
     let inputs = inputs(arguments, typed, &read, sha256);
-    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record =
+        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let found = Validation::from_measurements(&file, &read.data, &judging, inputs).map_err(in_file)?;
     let found = Validation { record, ..found };
     console.said_of(&read);
@@ -55,10 +56,11 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
         console.warning(doubt);
     }
     let rows = JudgedRows { data: &read.data, robot: &calibrated, rows: &found.judgement.rows };
-    let earlier: Vec<_> = own.iter().flat_map(|own| history.checks.before(&found, own)).collect();
+    let earlier: Vec<_> = own.iter().flat_map(|own| history.checks.checks_before(&found, own)).collect();
     let (folder, report) = places.write(&found, rows, || report::validation_page(&found, &rows, &earlier))?;
-    let mut written = folder.as_ref().map_or_else(String::new, |it| style::written(&it.folder, &it.files));
-    written.extend(report.as_ref().map(|path| labelled("report", &shown(path))));
+    let mut written =
+        folder.as_ref().map_or_else(String::new, |it| style::describe_written_files(&it.folder, &it.files));
+    written.extend(report.as_ref().map(|path| label_paragraph("report", &printable_path(path))));
     let place = folder.map(|it| it.folder).or(report);
     history.append(|history, time| history.append(&found, time), console)?;
     let table = || {
@@ -108,12 +110,12 @@ fn inputs(
 }
 
 /// Places of the results.
-fn places(arguments: &Validate, console: &Console) -> Result<ValidationPlaces> {
+fn places(arguments: &Validate, console: &Console) -> Result<ValidationOutputs> {
     let report = match &arguments.report {
         Some(ReportPlace::File(path)) => (true, Some(path.as_path())),
         Some(ReportPlace::None) => (false, None),
         None => (true, None),
     };
-    let (existing, inputs) = (Existing::forced(arguments.force), arguments.inputs());
-    ValidationPlaces::reserve(arguments.out.as_deref(), report, existing, &inputs, &mut console.warner())
+    let (existing, inputs) = (ExistingFiles::from_switch(arguments.force), arguments.inputs());
+    ValidationOutputs::reserve(arguments.out.as_deref(), report, existing, &inputs, &mut console.warner())
 }

@@ -9,13 +9,13 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::calibration_file::CalibrationFile;
-use poecal_results::track::{Earlier, TrackOptions, witnesses};
+use poecal_results::track::{Baseline, TrackOptions, witnesses};
 use poecal_storage::named_files::refuse_repeats;
 
 use crate::console::Console;
 
 /// A calibration with the interpretation of its rows and the knowledge of its visits.
-pub(super) struct Visited {
+pub(super) struct VisitedCalibration {
     pub(super) file: CalibrationFile,
     pub(super) robot: Robot,
     pub(super) meaning: ReadOptions,
@@ -24,7 +24,7 @@ pub(super) struct Visited {
 }
 
 /// Statements about the visits.
-pub(super) struct Stated<'a> {
+pub(super) struct VisitSettings<'a> {
     pub(super) calibration: &'a Path,
     pub(super) reference: &'a [PathBuf],
     pub(super) meaning: ReadOptions,
@@ -33,9 +33,9 @@ pub(super) struct Stated<'a> {
     pub(super) repeatability_m: Option<f64>,
 }
 
-impl Visited {
+impl VisitedCalibration {
     /// Reads the calibration and the earlier rows.
-    pub(super) fn read(stated: Stated<'_>, console: &Console) -> Result<Self> {
+    pub(super) fn read(stated: VisitSettings<'_>, console: &Console) -> Result<Self> {
         let file = CalibrationFile::read(stated.calibration)?;
         let in_file = |error: poecal_numerics::error::Error| {
             if error.kind() == ErrorKind::Model { error.in_file(stated.calibration) } else { error }
@@ -44,7 +44,7 @@ impl Visited {
         let mut meaning =
             ReadOptions { ignore_sets: true, controller: file.controller.clone(), ..stated.meaning };
         if let Some(known) = &file.pictures {
-            known.complete(&mut meaning).map_err(|error| error.in_file(stated.calibration))?;
+            known.complete_options(&mut meaning).map_err(|error| error.in_file(stated.calibration))?;
         }
         if file.has_another_model(stated.calibration) {
             console.remark(format!(
@@ -60,12 +60,12 @@ impl Visited {
         };
         let earlier =
             EarlierRows::read(stated.calibration, stated.reference, (&file, &robot, &meaning), console)?;
-        Ok(Visited { file, robot, meaning, options, earlier })
+        Ok(VisitedCalibration { file, robot, meaning, options, earlier })
     }
 
     /// Chooses `count` configurations, of the earlier rows or of a file of joint readings: their detectable shifts, and the table to fill in.
     /// `option` is the option that requested it.
-    pub(super) fn planned(
+    pub(super) fn plan_visit(
         &self,
         option: &str,
         count: usize,
@@ -79,7 +79,7 @@ impl Visited {
         };
         let new = new.map(|path| read_joints(path, &self.robot, &self.meaning)).transpose()?;
         let readings = new.as_ref().map(|it| it.readings.as_slice());
-        let kept = rows.kept(&self.file);
+        let kept = rows.kept_rows(&self.file);
         let found = witnesses(&self.file, &kept, readings, count, target, &self.options)?;
         let told = report::WitnessPlan::new(&found, &self.file.robot.name, new.is_some());
         let table =
@@ -128,7 +128,7 @@ impl EarlierRows {
         Ok(EarlierRows { read: read.ok(), is_own: true })
     }
 
-    pub(super) fn rows(&self) -> Option<Earlier<'_>> {
-        self.read.as_ref().map(|it| Earlier { data: &it.data, is_own: self.is_own })
+    pub(super) fn rows(&self) -> Option<Baseline<'_>> {
+        self.read.as_ref().map(|it| Baseline { data: &it.data, is_own: self.is_own })
     }
 }

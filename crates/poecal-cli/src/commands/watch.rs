@@ -4,17 +4,17 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use poecal_calibrate::Corrections;
-use poecal_import::{GrowingFile, News};
-use poecal_model::measurement::Kind;
+use poecal_import::{GrowingFile, NewRows};
+use poecal_model::measurement::SessionKind;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_plan::plan::{Watch as Watched, WatchOptions, workspace_in};
 use poecal_report as report;
 
 use super::models::read_model;
 use super::plan::{fit, readings};
-use crate::args::Watch;
+use crate::args::WatchArgs;
 use crate::console::Console;
-use crate::quantity::Workspace;
+use crate::quantity::WorkspaceChoice;
 use crate::{DONE, WORSE};
 
 /// Pause between two looks at the file.
@@ -22,7 +22,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 /// Number of consecutive looks with the same fault from which on a file is faulty, and not being written at the moment.
 const LOOKS: u32 = 20;
 
-pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
+pub(crate) fn watch(arguments: &WatchArgs, console: &Console) -> Result<u8> {
     if cfg!(target_family = "wasm") && !arguments.batch {
         return ErrorKind::Option.refuse(
             "found watch without --batch, expected it where a program cannot wait for a file, as in a browser",
@@ -34,13 +34,13 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     let read = |path| readings(path, &model, &reading, console);
     let candidates = arguments.candidates.as_ref().map(read).transpose()?;
     let workspace = match &arguments.workspace {
-        Workspace::Limits => None,
-        Workspace::Tasks(path) => Some(readings(path, &model, &reading, console)?),
-        Workspace::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
+        WorkspaceChoice::Limits => None,
+        WorkspaceChoice::Tasks(path) => Some(readings(path, &model, &reading, console)?),
+        WorkspaceChoice::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
-    let fit = fit(&arguments.fit, &model, Kind::POINT, 30)?;
+    let fit = fit(&arguments.fit, &model, SessionKind::POINT, 30)?;
     let options = WatchOptions { fit, candidates, workspace, seed: arguments.seed };
-    let mut file = opened(arguments, console);
+    let mut file = open_growing_file(arguments, console);
     let mut trouble = (String::new(), 0);
     let (mut watched, mut done, mut is_named, mut is_reached) = (None, 0, false, false);
     let is_corrected = arguments.fit.corrections != Corrections::Off;
@@ -49,7 +49,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
             Err(error) if !arguments.batch && is_for_a_moment(&error.to_string(), &mut trouble) => None,
             news => news?,
         };
-        if let Some(News { file, is_again }) = news {
+        if let Some(NewRows { file, is_again }) = news {
             if is_again && done > 0 {
                 console.warning("the file was shortened or changed: all rows are read again from the first");
                 (watched, done) = (None, 0);
@@ -62,7 +62,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
             while done < data.len() {
                 let row = session.add(data, done)?;
                 done += 1;
-                let line = report::Watched::new(&model.robot, data, &row);
+                let line = report::RowReport::new(&model.robot, data, &row);
                 is_named |= row.mistake.is_some();
                 console.json_or_table(arguments.json, || line.json(), || line.text())?;
                 let error =
@@ -82,7 +82,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
 }
 
 /// The file; unless it is read once, its creation is awaited.
-fn opened(arguments: &Watch, console: &Console) -> GrowingFile {
+fn open_growing_file(arguments: &WatchArgs, console: &Console) -> GrowingFile {
     let file = GrowingFile::new(&arguments.measurements);
     if arguments.batch {
         return file;

@@ -1,13 +1,13 @@
 //! `--accept` and `--record`: decisions with their exit codes, texts of certificates, and refused words.
 
 use poecal_calibrate::{AcceptedModel, AcceptedRows, Decision};
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::Folder;
 use crate::session::{calibration, session};
 
 /// The decision of a calibration with these words, with the exit code.
-fn decided(folder: &Folder, words: &str) -> (Decision, i32) {
+fn decide_acceptance(folder: &Folder, words: &str) -> (Decision, i32) {
     let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {words}"));
     let found = calibration(folder, "poecal-out").acceptance.unwrap_or_else(|| panic!("{}", run.err));
     let line = format!("acceptance    {}: ", found.decision.words());
@@ -17,8 +17,8 @@ fn decided(folder: &Folder, words: &str) -> (Decision, i32) {
 
 #[test]
 fn limits_are_kept_exceeded_or_neither() {
-    let folder = session(Kind::POSE);
-    folder.done("calibrate robot.urdf measurements.csv --accept 10mm");
+    let folder = session(SessionKind::POSE);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --accept 10mm");
     let file = calibration(&folder, "poecal-out");
     let own = file.accuracy.held_out.unwrap();
     let found = file.acceptance.unwrap();
@@ -31,18 +31,21 @@ fn limits_are_kept_exceeded_or_neither() {
     println!("{limit:?}");
     let to = limit.to.unwrap();
     assert!(limit.from < limit.found && limit.found < to && limit.rows == own.count);
-    assert_eq!(decided(&folder, &format!("--accept {}mm", to * 1.001)), (Decision::Pass, 0));
-    assert_eq!(decided(&folder, &format!("--accept {}mm", limit.found)), (Decision::NotShown, 1));
-    assert_eq!(decided(&folder, &format!("--accept {}mm", limit.from * 0.999)), (Decision::Fail, 1));
-    // The worst of several decides; without 59 configurations nothing bounds the 95 % quantile from above.
-    assert_eq!(decided(&folder, "--accept 10mm,5deg,max:20mm"), (Decision::Pass, 0));
+    assert_eq!(decide_acceptance(&folder, &format!("--accept {}mm", to * 1.001)), (Decision::Pass, 0));
+    assert_eq!(decide_acceptance(&folder, &format!("--accept {}mm", limit.found)), (Decision::NotShown, 1));
     assert_eq!(
-        decided(&folder, "--accept 10mm --accept 1e-5deg --accept-model calibrated"),
+        decide_acceptance(&folder, &format!("--accept {}mm", limit.from * 0.999)),
         (Decision::Fail, 1)
     );
-    assert_eq!(decided(&folder, "--accept p95:100mm"), (Decision::NotShown, 1));
+    // The worst of several decides; without 59 configurations nothing bounds the 95 % quantile from above.
+    assert_eq!(decide_acceptance(&folder, "--accept 10mm,5deg,max:20mm"), (Decision::Pass, 0));
+    assert_eq!(
+        decide_acceptance(&folder, "--accept 10mm --accept 1e-5deg --accept-model calibrated"),
+        (Decision::Fail, 1)
+    );
+    assert_eq!(decide_acceptance(&folder, "--accept p95:100mm"), (Decision::NotShown, 1));
     // Without rows held out, cross-validation decides.
-    assert_eq!(decided(&folder, "--accept 10mm --held-out 0"), (Decision::Pass, 0));
+    assert_eq!(decide_acceptance(&folder, "--accept 10mm --held-out 0"), (Decision::Pass, 0));
     let by = calibration(&folder, "poecal-out").acceptance.unwrap().by;
     assert_eq!(by, AcceptedRows::CrossValidation);
 }
@@ -50,9 +53,9 @@ fn limits_are_kept_exceeded_or_neither() {
 /// Without a noise that is stated or repeated, the largest observed error is the robot's: it bounds the maximum from below.
 #[test]
 fn a_maximum_is_no_less_than_was_seen_but_for_noise_that_is_shown() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let largest = |words: &str| {
-        let (_, _) = decided(&folder, &format!("--accept max:20mm {words}"));
+        let (_, _) = decide_acceptance(&folder, &format!("--accept max:20mm {words}"));
         calibration(&folder, "poecal-out").acceptance.unwrap().limits[0].clone()
     };
     let unknown = largest("");
@@ -70,8 +73,8 @@ fn a_maximum_is_no_less_than_was_seen_but_for_noise_that_is_shown() {
 
 #[test]
 fn other_measurements_decide_and_those_of_the_calibration_do_not() {
-    let folder = session(Kind::POSE);
-    folder.done("calibrate robot.urdf measurements.csv");
+    let folder = session(SessionKind::POSE);
+    folder.run_to_success("calibrate robot.urdf measurements.csv");
     let rows = folder.read("measurements.csv");
     let lines: Vec<&str> = rows.lines().collect();
     folder.write("some.csv", lines[..lines.len() - 3].join("\n") + "\n");
@@ -87,11 +90,11 @@ fn other_measurements_decide_and_those_of_the_calibration_do_not() {
 
 #[test]
 fn a_record_is_kept_and_shown_and_typed_keys_precede_those_of_the_settings() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let settings = "poecal_settings = 1\nmodel = \"robot.urdf\"\nmeasurements = [\"measurements.csv\"]\nforce = true\naccept = [\"10mm\"]\n\
                     [record]\nserial = \"<b>4711</b>\"\ndate = 2026-03-02\noperator = \"A = B\"\nnote = \"\"\n";
     folder.write("poecal.toml", settings);
-    folder.done("calibrate --record operator=C --record temperature=21.5C");
+    folder.run_to_success("calibrate --record operator=C --record temperature=21.5C");
     let record = calibration(&folder, "poecal-out").record;
     let found: Vec<(&str, &str)> = record.entries().iter().map(|&(key, _, text)| (key, text)).collect();
     let expected =
@@ -102,7 +105,7 @@ fn a_record_is_kept_and_shown_and_typed_keys_precede_those_of_the_settings() {
     assert!(page.contains("PASS: the limit is kept"));
     // The recorded command makes the same bytes without the settings.
     let before = folder.read("poecal-out/calibration.json");
-    folder.done("calibrate --record operator=C --record temperature=21.5C");
+    folder.run_to_success("calibrate --record operator=C --record temperature=21.5C");
     assert_eq!(folder.read("poecal-out/calibration.json"), before);
     let run = folder.run("report poecal-out/calibration.json --force");
     assert_eq!((run.code, folder.read("poecal-out/report.html") == page), (0, true), "{}", run.err);
@@ -110,7 +113,7 @@ fn a_record_is_kept_and_shown_and_typed_keys_precede_those_of_the_settings() {
 
 #[test]
 fn wrong_limits_and_records_are_refused_by_one_sentence() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let long = format!("--record serial={}", "x".repeat(201));
     let cases = [
         ("--accept 0.2", "--accept: found `0.2` as a limit, expected a unit behind the number"),

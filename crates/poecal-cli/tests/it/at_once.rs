@@ -18,24 +18,24 @@ fn line(count: usize) -> Folder {
     );
     fs::create_dir(folder.path("inbox")).unwrap();
     for robot in 0..count {
-        folder.done(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
+        folder.run_to_success(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
         folder.write(&format!("inbox/SN{robot}.csv"), folder.read(&format!("made{robot}/measurements.csv")));
     }
     folder
 }
 
-fn started(folder: &Folder, words: &str) -> Child {
+fn start_run(folder: &Folder, words: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
-    command.args(words.split_whitespace()).current_dir(folder.here());
+    command.args(words.split_whitespace()).current_dir(folder.root_path());
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-fn ended(child: Child) -> Run {
+fn end_run(child: Child) -> Run {
     Run::new(child.wait_with_output().unwrap())
 }
 
 /// A lock as another run holds it, until it is dropped.
-fn held(path: &Path, holder: &str) -> fs::File {
+fn hold_lock(path: &Path, holder: &str) -> fs::File {
     fs::write(path, holder).unwrap();
     let file = fs::OpenOptions::new().read(true).write(true).open(path).unwrap();
     file.lock().unwrap();
@@ -52,17 +52,17 @@ fn the_second_run_names_the_first_or_waits_for_it() {
         (".new.poecal-lock", "calibrate robot.urdf made0/measurements.csv --out new", "the folder"),
     ] {
         let path = folder.path(lock);
-        let lock = held(&path, "process 7 on line3");
+        let lock = hold_lock(&path, "process 7 on line3");
         let before = folder.listing();
         let run = folder.run(words);
         let part = format!("found {what} in use by process 7 on line3, expected one run at a time");
         assert!(run.code == 2 && run.err.contains(&part), "{words}: {}{}", run.out, run.err);
         assert_eq!(folder.listing(), before);
-        let waiting = started(&folder, &format!("{words} --wait 60s"));
+        let waiting = start_run(&folder, &format!("{words} --wait 60s"));
         std::thread::sleep(Duration::from_millis(300));
         fs::write(&path, "").unwrap();
         drop(lock);
-        let run = ended(waiting);
+        let run = end_run(waiting);
         assert_eq!(run.code, 0, "{words}: {}{}", run.out, run.err);
         assert!(!path.exists());
     }
@@ -87,16 +87,16 @@ fn the_lock_of_a_killed_run_is_taken_over_with_a_line() {
 fn nothing_is_lost_and_nothing_twice() {
     let folder = line(2);
     let both = [
-        started(&folder, "fleet station.toml --wait 60s"),
-        started(&folder, "fleet station.toml --wait 60s"),
+        start_run(&folder, "fleet station.toml --wait 60s"),
+        start_run(&folder, "fleet station.toml --wait 60s"),
     ];
-    let both = both.map(ended);
+    let both = both.map(end_run);
     assert_eq!(both.each_ref().map(|run| run.code), [0, 0], "{both:?}");
     assert_eq!(folder.read("fleet.jsonl").lines().count(), 2);
     let visits = [1, 2].map(|at| format!("made{at}"));
     for (at, visit) in visits.iter().enumerate() {
         if !folder.path(visit).exists() {
-            folder.done(&format!(
+            folder.run_to_success(&format!(
                 "simulate robot.urdf --kind point --count 12 --seed {} --out {visit}",
                 at + 7
             ));
@@ -105,9 +105,10 @@ fn nothing_is_lost_and_nothing_twice() {
     let words = |visit: &str| {
         format!("validate results/SN0/calibration.json {visit}/measurements.csv --refit device,tool")
     };
-    let running: Vec<Child> = [0, 0, 1, 1].iter().map(|at| started(&folder, &words(&visits[*at]))).collect();
+    let running: Vec<Child> =
+        [0, 0, 1, 1].iter().map(|at| start_run(&folder, &words(&visits[*at]))).collect();
     for child in running {
-        let run = ended(child);
+        let run = end_run(child);
         assert!(run.code <= 1, "{}{}", run.out, run.err);
     }
     let history = folder.read("results/SN0/history.jsonl");
@@ -183,7 +184,7 @@ fn a_log_that_is_written_again_is_waited_for() {
     let folder = line(1);
     let text = folder.read("made0/measurements.csv");
     let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
-    command.args(["watch", "robot.urdf", "log.csv", "--json"]).current_dir(folder.here());
+    command.args(["watch", "robot.urdf", "log.csv", "--json"]).current_dir(folder.root_path());
     let [out, err] = ["out.jsonl", "err.txt"].map(|name| fs::File::create(folder.path(name)).unwrap());
     let mut child = command.stdout(out).stderr(err).spawn().unwrap();
     let step = || std::thread::sleep(Duration::from_millis(250));

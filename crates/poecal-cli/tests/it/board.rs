@@ -7,7 +7,7 @@ const SPEC: &str = "charuco:5x7:36mm:18mm:DICT_6X6_250";
 #[test]
 fn a_board_is_drawn_as_pdf_and_svg() {
     let folder = Folder::new();
-    let out = folder.done(&format!("detect --print {SPEC} --paper a4 --out board.pdf"));
+    let out = folder.run_to_success(&format!("detect --print {SPEC} --paper a4 --out board.pdf"));
     assert!(out.starts_with("written       board.pdf\n"), "{out}");
     for words in
         ["5 columns by 7 rows of 36 mm squares", "210 x 297 mm", &format!("calibrate     --markers {SPEC}\n")]
@@ -16,7 +16,7 @@ fn a_board_is_drawn_as_pdf_and_svg() {
     }
     let pdf = folder.read("board.pdf");
     assert!(pdf.starts_with("%PDF-") && pdf.contains("/MediaBox [0 0 595.27559 841.88976]"));
-    assert_eq!(folder.done(&format!("detect --print {SPEC} --paper letter --out board.SVG --quiet")), "");
+    assert_eq!(folder.run_to_success(&format!("detect --print {SPEC} --paper letter --out board.SVG --quiet")), "");
     assert!(folder.read("board.SVG").contains("width=\"215.9mm\" height=\"279.4mm\""));
 }
 
@@ -44,9 +44,9 @@ fn dots_and_tags_are_drawn_and_measured_too() {
     ] {
         let folder = Folder::new();
         let out =
-            folder.done(&format!("detect --print {spec} --out board.pdf")).replace("\n              ", " ");
+            folder.run_to_success(&format!("detect --print {spec} --out board.pdf")).replace("\n              ", " ");
         assert!(out.contains(words) && folder.read("board.pdf").starts_with("%PDF-"), "{out}");
-        folder.done(&format!("detect --print {spec} --out board.svg --quiet"));
+        folder.run_to_success(&format!("detect --print {spec} --out board.svg --quiet"));
         assert!(folder.read("board.svg").contains("check the rulers"));
         let run = folder.run(&format!("detect --print {spec} --measured {measured}"));
         assert_eq!((run.code, run.out), (0, format!("--markers {printed}\n")), "{}", run.err);
@@ -68,7 +68,7 @@ fn what_it_prints_is_a_board_of_calibrate() {
         printed.err
     );
     assert!(folder.listing().is_empty());
-    let help = folder.done("detect --help");
+    let help = folder.run_to_success("detect --help");
     assert!(help.contains("--measured <X,Y>") && help.is_ascii(), "{help}");
 }
 
@@ -87,7 +87,7 @@ fn a_file_that_exists_stays_unless_forced() {
     let run = folder.run(&format!("detect --print {SPEC} --out board.pdf"));
     assert!(run.code == 2 && run.err.contains("board.pdf"), "{}", run.err);
     assert_eq!(folder.read("board.pdf"), "mine");
-    folder.done(&format!("detect --print {SPEC} --out board.pdf --force"));
+    folder.run_to_success(&format!("detect --print {SPEC} --out board.pdf --force"));
     assert!(folder.read("board.pdf").starts_with("%PDF-"));
 }
 

@@ -1,18 +1,18 @@
 //! `poecal report --certificate`.
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::session::session;
 
 /// The statements of the record are printed beside those of the calibration, with the checksum of its file.
 #[test]
 fn a_certificate_states_the_session_and_its_result() {
-    let folder = session(Kind::POINT);
-    folder.done(
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success(
         "calibrate robot.urdf measurements.csv --accept 10mm --record serial=4711 --record operator=Mia",
     );
     folder.write("logo.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
-    let out = folder.done(
+    let out = folder.run_to_success(
         "report poecal-out/calibration.json --certificate --logo logo.svg --record valid_until=2027-11-28 --record serial=4712",
     );
     assert_eq!(out, "written       poecal-out/certificate.html\n");
@@ -24,7 +24,7 @@ fn a_certificate_states_the_session_and_its_result() {
     }
     assert!(!page.contains("4711") && !page.contains("<script"));
     // Again: its own file is replaced, others' are not.
-    folder.done("report poecal-out/calibration.json --certificate");
+    folder.run_to_success("report poecal-out/calibration.json --certificate");
     folder.write("theirs.html", "theirs");
     for (words, sentence) in [
         ("report poecal-out/calibration.json --certificate --out theirs.html", "theirs.html"),

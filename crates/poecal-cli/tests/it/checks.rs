@@ -1,20 +1,20 @@
 //! Results of `poecal validate`: the record and report of a repeat measurement, and the history of checks.
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use serde_json::Value;
 
 use crate::folder::Folder;
 use crate::session::{session, write_measurements};
 
 /// A calibration in `poecal-out`, and other sessions of the same robot.
-fn checked() -> Folder {
-    let folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv");
+fn folder_with_checks() -> Folder {
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv");
     // The same robot and device, in configurations that follow those of the calibration.
     write_measurements(
         &folder,
         "all.csv",
-        Kind::POINT,
+        SessionKind::POINT,
         "",
         &Simulation { count: 160, ..Simulation::default() },
     );
@@ -33,9 +33,9 @@ fn history(folder: &Folder, name: &str) -> Vec<Value> {
 
 #[test]
 fn a_repeat_measurement_has_its_own_record_and_report() {
-    let folder = checked();
+    let folder = folder_with_checks();
     let command = "validate poecal-out/calibration.json spring.csv --refit device --out spring --record operator=Mia --record serial=4711";
-    let out = folder.done(command);
+    let out = folder.run_to_success(command);
     println!("{out}");
     assert!(out.starts_with("verdict       the calibration "), "{out}");
     assert!(
@@ -75,7 +75,7 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     // The same command again refuses; with --force it writes the same bytes.
     let run = folder.run(command);
     assert_eq!(run.code, 2, "{}", run.err);
-    folder.done(&format!("{command} --force"));
+    folder.run_to_success(&format!("{command} --force"));
     assert!(folder.read("spring/report.html") == page, "another page");
     // The results of the calibration are never replaced by those of a check, nor the other way round.
     let own = folder.read("poecal-out/report.html");
@@ -95,15 +95,15 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
 
 #[test]
 fn the_history_gets_a_line_a_check() {
-    let folder = checked();
+    let folder = folder_with_checks();
     let check = "validate poecal-out/calibration.json";
-    folder.done(&format!("{check} spring.csv --refit device --quiet"));
-    folder.done(&format!("{check} spring.csv --refit device --quiet --json"));
+    folder.run_to_success(&format!("{check} spring.csv --refit device --quiet"));
+    folder.run_to_success(&format!("{check} spring.csv --refit device --quiet --json"));
     assert_eq!(history(&folder, "poecal-out/history.jsonl").len(), 1, "the same check is there once");
     // A killed run left an incomplete line.
     let cut = folder.read("poecal-out/history.jsonl") + "{\"time\": \"2026-";
     folder.write("poecal-out/history.jsonl", cut);
-    folder.done(&format!("{check} autumn.csv --refit device --quiet --report autumn.html"));
+    folder.run_to_success(&format!("{check} autumn.csv --refit device --quiet --report autumn.html"));
     let lines: Vec<Value> = folder
         .read("poecal-out/history.jsonl")
         .lines()
@@ -117,14 +117,14 @@ fn the_history_gets_a_line_a_check() {
     let page = folder.read("autumn.html");
     assert!(page.contains("Checks of this calibration") && page.contains(lines[0]["time"].as_str().unwrap()));
     // A calibration again into the same folder keeps the history, which does not belong to the new calibration.
-    folder.done("calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet");
+    folder.run_to_success("calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet");
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 3);
-    folder.done(&format!("{check} autumn.csv --refit device --quiet --report again.html"));
+    folder.run_to_success(&format!("{check} autumn.csv --refit device --quiet --report again.html"));
     assert!(!folder.read("again.html").contains("Checks of this calibration"));
     // Elsewhere, or nowhere.
     let before = folder.read("poecal-out/history.jsonl");
-    folder.done(&format!("{check} spring.csv --refit device --quiet --history cell.jsonl"));
-    folder.done(&format!("{check} spring.csv --refit device --quiet --refit tool --history none"));
+    folder.run_to_success(&format!("{check} spring.csv --refit device --quiet --history cell.jsonl"));
+    folder.run_to_success(&format!("{check} spring.csv --refit device --quiet --refit tool --history none"));
     assert_eq!((history(&folder, "cell.jsonl").len(), folder.read("poecal-out/history.jsonl")), (1, before));
     // A file that is no history is not written to.
     let rows = folder.read("spring.csv");

@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_results::calibration_file::CalibrationFile;
 
 use crate::folder::Folder;
 use crate::session::{numbers, session};
 
 /// A text without its digits, signs and points.
-fn bare(text: &str) -> String {
+fn strip_digits(text: &str) -> String {
     text.chars().filter(|c| !c.is_ascii_digit() && !".,-e".contains(*c)).collect()
 }
 
@@ -18,8 +18,8 @@ const PROGRAM: &str = "\u{feff}# Griff; 1;2;3\r\nname;joint1[deg];joint2[deg];jo
 
 /// A folder with a calibration and a program.
 fn folder() -> Folder {
-    let folder = session(Kind::POSE);
-    folder.done("calibrate robot.urdf measurements.csv --out results");
+    let folder = session(SessionKind::POSE);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out results");
     folder.write("program.csv", PROGRAM);
     folder
 }
@@ -28,32 +28,33 @@ fn folder() -> Folder {
 fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     let folder = folder();
     let told = folder
-        .done("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check");
+        .run_to_success("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check");
     assert!(told.starts_with("largest change: `joint"), "{told}");
     assert!(told.contains("\n3 rows corrected: without correction the tip would be off by "), "{told}");
     assert!(told.contains("checked from the written numbers: at most "), "{told}");
     let written = folder.read("out.csv");
-    assert_eq!(bare(&written), bare(PROGRAM));
+    assert_eq!(strip_digits(&written), strip_digits(PROGRAM));
     assert_ne!(written, PROGRAM);
     // By the program's own predictions, of the same readings without the words of the file.
     let plain = |text: &str| {
         let mut plain =
             "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n".to_owned();
         for row in text.lines().filter(|it| ["A;", "\"B", " C"].iter().any(|name| it.starts_with(name))) {
-            let cells: Vec<String> = row.replace("B; c", "").split(';').skip(1).take(6).map(clean).collect();
+            let cells: Vec<String> =
+                row.replace("B; c", "").split(';').skip(1).take(6).map(clean_cell).collect();
             writeln!(plain, "{}", cells.join(",")).unwrap();
         }
         plain
     };
-    fn clean(cell: &str) -> String {
+    fn clean_cell(cell: &str) -> String {
         cell.trim().trim_matches('"').replace(',', ".")
     }
     folder.write("commanded.csv", plain(&written));
-    let reached = numbers(&folder.done("predict results/calibration.json commanded.csv"), 0);
+    let reached = numbers(&folder.run_to_success("predict results/calibration.json commanded.csv"), 0);
     // Programmed with base and tool of the actual robot.
     let file = CalibrationFile::read(folder.path("results/calibration.json")).unwrap();
-    let actual = file.corrected().map_or_else(|| file.robot(), |it| it.robot()).unwrap();
-    let taught = file.taught(&actual).unwrap().robot;
+    let actual = file.corrected_file().map_or_else(|| file.robot(), |it| it.robot()).unwrap();
+    let taught = file.taught_robot(&actual).unwrap().robot;
     let meant: Vec<_> = numbers(&plain(PROGRAM), 0)
         .iter()
         .map(|degrees| degrees.iter().map(|it| it.to_radians()).collect::<Vec<f64>>())
@@ -70,13 +71,13 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
 fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     let folder = folder();
     let json = folder
-        .done("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json");
+        .run_to_success("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json");
     let found: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&found["rows"], &found["joints"][5]), (&3.into(), &"joint6".into()));
     assert!(found["left_m"]["value"].as_f64().unwrap() < 1e-9);
     let written = folder.read("out.csv");
     assert_eq!(
-        folder.done("compensate --max-correction 20deg results/calibration.json program.csv"),
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json program.csv"),
         written
     );
     let piped =
@@ -85,7 +86,7 @@ fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     // Without a calibration's findings there is nothing to correct.
     folder.write("same.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
     let other =
-        folder.done("compensate --max-correction 20deg results/calibration.json same.csv --model calibrated");
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json same.csv --model calibrated");
     assert_eq!(other.lines().count(), 2);
 }
 
@@ -242,12 +243,12 @@ fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
     let folder = folder();
     folder.write("rows.dat", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
     let table =
-        folder.done("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
     assert_eq!(table.lines().count(), 2);
     let program = "DEF p()\nPTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; {A1 1}\nEND\n";
     folder.write("p.txt", program);
     let written =
-        folder.done("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
     println!("{written}");
     assert!(
         written.starts_with("DEF p()\nPTP {A1 ")
@@ -260,7 +261,7 @@ fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
     );
     assert_eq!((piped.code, piped.out), (0, written));
     folder.write("p.src", program);
-    folder.done("compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet");
+    folder.run_to_success("compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_results::model::Model;
 
 use crate::folder::Folder;
@@ -13,12 +13,12 @@ const MAP: &str = "[units]\nangle = \"deg\"\n[joints]\njoint1 = { columns = { A1
 const LEVEL: &str = "third_axis = \"level\"\n[units]\nangle = \"deg\"\n";
 
 /// Counts of the controller of [`MAP`] at joint values, degrees.
-fn counted(q: &[f64]) -> Vec<f64> {
+fn count_values(q: &[f64]) -> Vec<f64> {
     vec![5.0 - q[0], q[1], q[2] - q[1], q[3], 2.0 * q[4], q[5]]
 }
 
 /// The joint values at these counts.
-fn uncounted(c: &[f64]) -> Vec<f64> {
+fn uncount_values(c: &[f64]) -> Vec<f64> {
     vec![5.0 - c[0], c[1], c[1] + c[2], c[3], 0.5 * c[4], c[5]]
 }
 
@@ -34,8 +34,8 @@ fn line(numbers: &[f64]) -> String {
 }
 
 /// A folder with one session twice, as the model reads it and as the controller counts, and both calibrated.
-fn both(map: &str, count: impl Fn(&[f64]) -> Vec<f64>) -> Folder {
-    let folder = session(Kind::POSE);
+fn folder_with_both(map: &str, count: impl Fn(&[f64]) -> Vec<f64>) -> Folder {
+    let folder = session(SessionKind::POSE);
     let plain = folder.read("measurements.csv");
     let mut rows = plain.lines();
     let mut text = rows.next().unwrap().replace("joint", "A");
@@ -46,8 +46,8 @@ fn both(map: &str, count: impl Fn(&[f64]) -> Vec<f64>) -> Folder {
     }
     folder.write("controller.csv", text);
     folder.write("map.toml", map);
-    folder.done("calibrate robot.urdf measurements.csv --out plain");
-    folder.done("calibrate robot.urdf controller.csv --columns map.toml --out results");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out plain");
+    folder.run_to_success("calibrate robot.urdf controller.csv --columns map.toml --out results");
     folder
 }
 
@@ -57,7 +57,7 @@ fn targets() -> Vec<Vec<f64>> {
     (0..10).map(|k| (0..6).map(|j| at(k, j) + if j == 4 { 50.0 } else { 0.0 }).collect()).collect()
 }
 
-fn largest(found: &[Vec<f64>], wanted: &[Vec<f64>]) -> f64 {
+fn largest_difference(found: &[Vec<f64>], wanted: &[Vec<f64>]) -> f64 {
     assert_eq!(found.len(), wanted.len());
     let apart = found.iter().zip(wanted).flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()));
     apart.fold(0.0, f64::max)
@@ -68,7 +68,7 @@ const ROUNDING_DEG: f64 = 1e-6;
 
 #[test]
 fn tables_are_read_and_written_as_the_controller_counts() {
-    let folder = both(MAP, counted);
+    let folder = folder_with_both(MAP, count_values);
     let q = targets();
     let table = |names: &str, rows: &[Vec<f64>]| {
         format!("{names}\n{}\n", rows.iter().map(|it| line(it)).collect::<Vec<_>>().join("\n"))
@@ -79,22 +79,22 @@ fn tables_are_read_and_written_as_the_controller_counts() {
     );
     folder.write(
         "counted.csv",
-        table("A1,A2,A3,A4,A5,A6", &q.iter().map(|it| counted(it)).collect::<Vec<_>>()),
+        table("A1,A2,A3,A4,A5,A6", &q.iter().map(|it| count_values(it)).collect::<Vec<_>>()),
     );
-    let meant = numbers(&folder.done("predict plain/calibration.json plain.csv"), 0);
-    let found = numbers(&folder.done("predict results/calibration.json counted.csv"), 0);
-    println!("predictions differ by up to {:.1e}", largest(&found, &meant));
-    assert!(largest(&found, &meant) < 1e-9);
+    let meant = numbers(&folder.run_to_success("predict plain/calibration.json plain.csv"), 0);
+    let found = numbers(&folder.run_to_success("predict results/calibration.json counted.csv"), 0);
+    println!("predictions differ by up to {:.1e}", largest_difference(&found, &meant));
+    assert!(largest_difference(&found, &meant) < 1e-9);
     let plain =
-        numbers(&folder.done("compensate --max-correction 20deg plain/calibration.json plain.csv"), 0);
-    let made = folder.done("compensate --max-correction 20deg results/calibration.json counted.csv");
+        numbers(&folder.run_to_success("compensate --max-correction 20deg plain/calibration.json plain.csv"), 0);
+    let made = folder.run_to_success("compensate --max-correction 20deg results/calibration.json counted.csv");
     assert!(made.starts_with("A1,A2,A3,A4,A5,A6\n"), "{made}");
-    let back: Vec<Vec<f64>> = numbers(&made, 0).iter().map(|it| uncounted(it)).collect();
-    println!("commands differ by up to {:.1e} deg", largest(&back, &plain));
-    assert!(largest(&back, &plain) < ROUNDING_DEG && largest(&back, &q) > 1e-3);
+    let back: Vec<Vec<f64>> = numbers(&made, 0).iter().map(|it| uncount_values(it)).collect();
+    println!("commands differ by up to {:.1e} deg", largest_difference(&back, &plain));
+    assert!(largest_difference(&back, &plain) < ROUNDING_DEG && largest_difference(&back, &q) > 1e-3);
     // Judged by the same rows without a statement about their columns.
-    let judged = folder.done("validate results/calibration.json controller.csv --json");
-    let wanted = folder.done("validate plain/calibration.json measurements.csv --json");
+    let judged = folder.run_to_success("validate results/calibration.json controller.csv --json");
+    let wanted = folder.run_to_success("validate plain/calibration.json measurements.csv --json");
     let rms = |text: &str| {
         let found: serde_json::Value = serde_json::from_str(text).unwrap();
         found["calibrated"]["position_mm"]["rms"].as_f64().unwrap_or_else(|| panic!("{found:#}"))
@@ -103,7 +103,7 @@ fn tables_are_read_and_written_as_the_controller_counts() {
     // A table of the model's own readings is recognised as such, and a note states that.
     let run = folder.run("predict results/calibration.json plain.csv");
     assert!(
-        largest(&numbers(&run.out, 0), &meant) < 1e-9 && run.err.contains("joint3 = A2 + A3"),
+        largest_difference(&numbers(&run.out, 0), &meant) < 1e-9 && run.err.contains("joint3 = A2 + A3"),
         "{}",
         run.err
     );
@@ -114,37 +114,40 @@ fn joint_targets_are_as_the_controller_counts_and_poses_as_they_were() {
     for (map, count, back, languages) in [
         (
             MAP,
-            counted as fn(&[f64]) -> Vec<f64>,
-            uncounted as fn(&[f64]) -> Vec<f64>,
+            count_values as fn(&[f64]) -> Vec<f64>,
+            uncount_values as fn(&[f64]) -> Vec<f64>,
             &["src", "script", "ls"][..],
         ),
         (LEVEL, from_level, |c: &[f64]| vec![c[0], c[1], c[2] + c[1], c[3], c[4], c[5]], &["ls"]),
     ] {
-        let folder = both(map, count);
+        let folder = folder_with_both(map, count);
         for language in languages {
             let written = |name: &str, rows: &[Vec<f64>]| folder.write(name, program(language, rows));
             let q = targets();
             written(&format!("plain.{language}"), &q);
             written(&format!("counted.{language}"), &q.iter().map(|it| count(it)).collect::<Vec<_>>());
             let run = |from: &str, name: &str| {
-                folder.done(&format!(
+                folder.run_to_success(&format!(
                     "compensate --max-correction 20deg {from}/calibration.json {name}.{language} --check --out {name}.out.{language}"
                 ));
                 joints(language, &folder.read(&format!("{name}.out.{language}")))
             };
             let (plain, found) = (run("plain", "plain"), run("results", "counted"));
             let found: Vec<Vec<f64>> = found.iter().map(|it| back(it)).collect();
-            let apart = largest(&found, &plain);
+            let apart = largest_difference(&found, &plain);
             println!("{language}: commands differ by up to {apart:.1e} deg");
             // Nine decimals of a radian, six of a degree.
-            assert!(plain.len() == 10 && apart < 3e-6 && largest(&found, &q) > 1e-3, "{language}: {apart}");
+            assert!(
+                plain.len() == 10 && apart < 3e-6 && largest_difference(&found, &q) > 1e-3,
+                "{language}: {apart}"
+            );
         }
     }
 }
 
 #[test]
 fn poses_are_corrected_in_the_configuration_to_which_the_joints_before_lead() {
-    let folder = both(MAP, counted);
+    let folder = folder_with_both(MAP, count_values);
     let robot = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap().robot;
     let radians = |q: &[f64]| q.iter().map(|it| it.to_radians()).collect::<Vec<f64>>();
     let from = targets().remove(1);
@@ -153,9 +156,9 @@ fn poses_are_corrected_in_the_configuration_to_which_the_joints_before_lead() {
     let pose = line(&[to.translation.x, to.translation.y, to.translation.z, turn.x, turn.y, turn.z]);
     let job = |q: &[f64]| format!("movej([{}])\nmovel(p[{pose}])\n", line(&radians(q)));
     folder.write("plain.script", job(&from));
-    folder.write("counted.script", job(&counted(&from)));
+    folder.write("counted.script", job(&count_values(&from)));
     let made = |from: &str, name: &str| -> Vec<f64> {
-        let text = folder.done(&format!(
+        let text = folder.run_to_success(&format!(
             "compensate --max-correction 20deg {from}/calibration.json {name}.script --tool-data 0,0,0,0,0,0"
         ));
         let cells = text.lines().nth(1).unwrap().trim_start_matches("movel(p[").trim_end_matches("])");
@@ -163,8 +166,8 @@ fn poses_are_corrected_in_the_configuration_to_which_the_joints_before_lead() {
     };
     let (plain, found) = ([made("plain", "plain")], [made("results", "counted")]);
     let meant = [pose.split(',').map(|it| it.parse().unwrap()).collect::<Vec<f64>>()];
-    println!("poses differ by up to {:.1e} m or rad", largest(&found, &plain));
-    assert!(largest(&found, &plain) < 2e-9 && largest(&plain, &meant) > 1e-4);
+    println!("poses differ by up to {:.1e} m or rad", largest_difference(&found, &plain));
+    assert!(largest_difference(&found, &plain) < 2e-9 && largest_difference(&plain, &meant) > 1e-4);
 }
 
 /// A program of joint targets, numbers in degrees.
@@ -228,19 +231,19 @@ fn joints(language: &str, text: &str) -> Vec<Vec<f64>> {
 
 #[test]
 fn a_third_axis_is_stated_where_rows_do_not_show_it() {
-    let folder = both(LEVEL, from_level);
+    let folder = folder_with_both(LEVEL, from_level);
     let kept: serde_json::Value = serde_json::from_str(&folder.read("results/calibration.json")).unwrap();
     assert_eq!(kept["controller"]["third_axis"], "level");
     folder.write("job.ls", program("ls", &targets().iter().map(|it| from_level(it)).collect::<Vec<_>>()));
     // The calibration whose readings are the model's, by a driver: here J3 is stated to count from the level.
     let stated =
-        folder.done("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
-    let by_map = folder.done("compensate --max-correction 20deg results/calibration.json job.ls");
-    let apart = largest(&joints("ls", &stated), &joints("ls", &by_map));
+        folder.run_to_success("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
+    let by_map = folder.run_to_success("compensate --max-correction 20deg results/calibration.json job.ls");
+    let apart = largest_difference(&joints("ls", &stated), &joints("ls", &by_map));
     assert!(apart < 3e-6, "{apart}");
     // The same mapping again has the same result.
-    let again = folder.done("validate results/calibration.json controller.csv --columns map.toml --json");
-    let without = folder.done("validate results/calibration.json controller.csv --json");
+    let again = folder.run_to_success("validate results/calibration.json controller.csv --columns map.toml --json");
+    let without = folder.run_to_success("validate results/calibration.json controller.csv --json");
     assert_eq!(again.replace(" --columns map.toml", ""), without);
     // Rows in which joint 2 hardly moves do not determine it.
     let file = folder.read("plain/calibration.json");
@@ -274,7 +277,7 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     }
     assert_eq!(folder.listing(), before);
     assert!(
-        joints("ls", &folder.done("compensate --max-correction 20deg narrow.json job.ls --third-axis arm"))
+        joints("ls", &folder.run_to_success("compensate --max-correction 20deg narrow.json job.ls --third-axis arm"))
             .len()
             == 10
     );
@@ -282,7 +285,7 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
 
 #[test]
 fn a_third_axis_from_the_level_may_have_a_sign_and_an_offset() {
-    let folder = both("[units]\nangle = \"deg\"\n", <[f64]>::to_vec);
+    let folder = folder_with_both("[units]\nangle = \"deg\"\n", <[f64]>::to_vec);
     let numbered = "joint1 = \"A1\"\njoint4 = \"A4\"\njoint5 = \"A5\"\njoint6 = \"A6\"\n";
     let axes = "joint2 = { column = \"A2\", offset = 7 }\njoint3 = { columns = { A3 = -1 }, offset = 5 }\n";
     folder.write("level.toml", format!("{LEVEL}[joints]\n{numbered}{axes}"));
@@ -300,7 +303,7 @@ fn a_third_axis_from_the_level_may_have_a_sign_and_an_offset() {
     });
     folder.write("turned.csv", turned.collect::<Vec<_>>().join("\n"));
     let kept = |map: &str| -> serde_json::Value {
-        folder.done(&format!("calibrate robot.urdf turned.csv --columns {map}.toml --out {map}"));
+        folder.run_to_success(&format!("calibrate robot.urdf turned.csv --columns {map}.toml --out {map}"));
         serde_json::from_str(&folder.read(&format!("{map}/calibration.json"))).unwrap()
     };
     let (level, sums) = (kept("level"), kept("sums"));
@@ -316,7 +319,7 @@ fn a_third_axis_from_the_level_may_have_a_sign_and_an_offset() {
 
 #[test]
 fn a_third_axis_that_counts_from_the_level_is_named_with_the_line_that_reads_it() {
-    let folder = both(LEVEL, from_level);
+    let folder = folder_with_both(LEVEL, from_level);
     folder.write("without.toml", "[units]\nangle = \"deg\"\n");
     let told = folder.run("check robot.urdf controller.csv --columns without.toml").out;
     println!("{told}");
@@ -331,9 +334,9 @@ fn a_third_axis_that_counts_from_the_level_is_named_with_the_line_that_reads_it(
 
 #[test]
 fn a_file_whose_controller_is_of_another_robot_is_refused() {
-    let folder = both(MAP, counted);
+    let folder = folder_with_both(MAP, count_values);
     let kept: serde_json::Value = serde_json::from_str(&folder.read("results/calibration.json")).unwrap();
-    folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&counted(&targets()[0]))));
+    folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&count_values(&targets()[0]))));
     let shorter = {
         let mut file = kept.clone();
         file["controller"]["readings"].as_array_mut().unwrap().pop();
@@ -368,7 +371,7 @@ fn a_file_whose_controller_is_of_another_robot_is_refused() {
 
 #[test]
 fn exports_say_what_the_controller_counts() {
-    let folder = both(MAP, counted);
+    let folder = folder_with_both(MAP, count_values);
     let c = folder.run("export results/calibration.json --format c");
     assert!(
         c.err.contains("joint3 = A2 + A3") && c.out.contains("readings[2] = counted[1] + counted[2]"),
@@ -389,14 +392,14 @@ fn exports_say_what_the_controller_counts() {
 
 #[test]
 fn sums_that_cannot_be_taken_apart_are_predicted_and_not_corrected() {
-    let folder = both(MAP, counted);
+    let folder = folder_with_both(MAP, count_values);
     folder.write("constant.toml", MAP.replace("joint6 = \"A6\"", "joint6 = { value = 10 }"));
     let run = folder.run(
         "calibrate robot.urdf controller.csv --columns constant.toml --out fixed --corrections off --quiet",
     );
     assert!(run.code < 2, "{}", run.err);
-    folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&counted(&targets()[0]))));
-    assert_eq!(numbers(&folder.done("predict fixed/calibration.json counted.csv"), 0).len(), 1);
+    folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&count_values(&targets()[0]))));
+    assert_eq!(numbers(&folder.run_to_success("predict fixed/calibration.json counted.csv"), 0).len(), 1);
     let run = folder.run("compensate fixed/calibration.json counted.csv --out out.csv");
     assert!(run.code == 2 && run.err.contains("joint `joint6` is a constant by the mapping"), "{}", run.err);
     folder.write("job.ls", program("ls", &targets()));

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use poecal_detect::render::{Camera, Draw, Random, Scene};
-use poecal_detect::{Gray, Layout, preview};
+use poecal_detect::render::{RandomGenerator, RandomScenes, RenderCamera, RenderScene};
+use poecal_detect::{BoardLayout, Gray, preview};
 use poecal_formats::urdf::ChainSelection;
 use poecal_import::read_boards;
 use poecal_model::camera::Board;
@@ -38,23 +38,31 @@ fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved
         error_position_m: 1e-3,
         ..Simulation::default()
     };
-    let simulated =
-        PictureSimulation { lens, board, distance_m: [0.35, 0.5], ..PictureSimulation::usual(session, true) };
+    let simulated = PictureSimulation {
+        lens,
+        board,
+        distance_m: [0.35, 0.5],
+        ..PictureSimulation::with_usual_camera(session, true)
+    };
     let made = simulated.run(&model.robot).unwrap();
-    let layout = Layout::new(&spec.parse().unwrap());
-    let camera =
-        Camera { size: [960, 600], focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [0.0; 2] };
+    let layout = BoardLayout::new(&spec.parse().unwrap());
+    let camera = RenderCamera {
+        size: [960, 600],
+        focal_px: lens.focal_px,
+        centre_px: lens.centre_px,
+        distortion: [0.0; 2],
+    };
     let names = made.data.reading_names().join("[rad],");
     let mut table = format!("image,{names}[rad]\n");
     fs::create_dir(folder.path("pictures")).unwrap();
-    let mut random = Random::new(5);
+    let mut random = RandomGenerator::new(5);
     for at in 0..made.data.len() {
         let readings = made.data.readings(at);
         let along = if at >= moved { 0.02 } else { 0.0 };
         let shift = poecal_arm::lie::Pose::from_xyz_rpy([along, 0.0, 0.0], [0.0; 3]);
         let held = made.actual.forward_kinematics(readings) * made.tip_from_held;
         let pose = held.inverse() * made.base_from_other * shift;
-        let scene = Scene {
+        let scene = RenderScene {
             camera,
             rotation: pose.rotation,
             translation_m: pose.translation,
@@ -90,16 +98,16 @@ fn pictures_calibrate_an_arm_in_three_commands() {
     let words = format!(
         "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {SPEC} --out results --verbose"
     );
-    let out = folder.done(&words);
+    let out = folder.run_to_success(&words);
     let line = out.lines().find(|line| line.starts_with("held out")).unwrap();
     println!("{line}");
     let px: f64 = line.split_whitespace().nth(4).unwrap().parse().unwrap();
     // Rendered corners have errors of 0.05 px by themselves, and 21 pictures determine the arm to about as much more.
     assert!(line.contains("pictures") && px < 0.3, "{line}");
-    folder.done("report results/calibration.json --out again.html");
+    folder.run_to_success("report results/calibration.json --out again.html");
     // With an unknown lens: the same with the size of the pictures alone.
     let words = words.replace("lens.csv", "unknown:960x600").replace("results", "unknown");
-    let out = folder.done(&words);
+    let out = folder.run_to_success(&words);
     let line = out.lines().find(|line| line.starts_with("found")).unwrap();
     println!("{line}");
     let focal: f64 = line.split("-> ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
@@ -160,7 +168,7 @@ fn grids_of_dots_and_of_tags_calibrate_an_arm() {
         let words = format!(
             "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results --verbose"
         );
-        assert!(held_out_px(&folder.done(&words)) < 0.3, "{spec}");
+        assert!(held_out_px(&folder.run_to_success(&words)) < 0.3, "{spec}");
     }
 }
 
@@ -169,28 +177,37 @@ fn loose_tags_calibrate_an_arm_each_at_a_place_of_its_own() {
     let folder = Folder::new();
     let spec = "tags:36h11:25mm";
     session_of(&folder, (spec, Board::chessboard("board", [10, 7], 0.025).unwrap()), 42, usize::MAX);
-    folder.done(&format!("detect pictures --board {spec} --out corners.csv"));
+    folder.run_to_success(&format!("detect pictures --board {spec} --out corners.csv"));
     assert!(folder.read("corners.csv").contains("\n0.png,tag7.3,"));
     let words = format!(
         "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results --verbose"
     );
-    assert!(held_out_px(&folder.done(&words)) < 0.5);
+    assert!(held_out_px(&folder.run_to_success(&words)) < 0.5);
 }
 
 #[test]
 fn the_table_has_the_points_where_they_are() {
-    let camera =
-        Camera { size: [960, 600], focal_px: [800.0; 2], centre_px: [479.5, 299.5], distortion: [-0.1, 0.0] };
-    let draw =
-        Draw { camera, square_px: [38.0, 42.0], tilt_deg: [0.0, 40.0], covered_each: 0, ..Draw::default() };
+    let camera = RenderCamera {
+        size: [960, 600],
+        focal_px: [800.0; 2],
+        centre_px: [479.5, 299.5],
+        distortion: [-0.1, 0.0],
+    };
+    let draw = RandomScenes {
+        camera,
+        square_px: [38.0, 42.0],
+        tilt_deg: [0.0, 40.0],
+        covered_each: 0,
+        ..RandomScenes::default()
+    };
     for spec in
         ["circles:9x6:30mm", "circles:4x7:20mm:asymmetric", "aprilgrid:4x3:40mm:0.3", "tags:36h11:50mm"]
     {
-        let layout = Layout::new(&spec.parse().unwrap());
+        let layout = BoardLayout::new(&spec.parse().unwrap());
         let drawn = draw.scene(&layout, 3, 2);
         let folder = Folder::new();
         fs::write(folder.path("one.png"), preview(&drawn.picture, &[]).unwrap()).unwrap();
-        folder.done(&format!("detect one.png --board {spec} --out corners.csv"));
+        folder.run_to_success(&format!("detect one.png --board {spec} --out corners.csv"));
         let table = folder.read("corners.csv");
         // Grids of dots that look the same turned may begin at their other end.
         let last = drawn.truth.len() - 1;
@@ -221,7 +238,7 @@ fn both_programs_have_the_points_of_a_board_at_the_same_places() {
         "circles:4x11:20mm:asymmetric",
         "aprilgrid:6x5:88mm:0.3",
     ] {
-        let points = Layout::new(&spec.parse().unwrap()).points();
+        let points = BoardLayout::new(&spec.parse().unwrap()).points();
         let board = read_boards(spec).unwrap().remove(0);
         assert_eq!(
             points.iter().map(|it| &it.name).collect::<Vec<_>>(),
@@ -234,7 +251,7 @@ fn both_programs_have_the_points_of_a_board_at_the_same_places() {
     }
     // With loose tags each is a board of its own.
     let tag = read_boards("tags:36h11:50mm").unwrap().remove(0);
-    let points = Layout::new(&"tags:36h11:50mm".parse().unwrap()).points();
+    let points = BoardLayout::new(&"tags:36h11:50mm".parse().unwrap()).points();
     for (one, (name, other)) in points[48..52].iter().zip(tag.names.iter().zip(&tag.points)) {
         assert_eq!(one.name, format!("tag12.{name}"));
         assert!((one.place_m[0] - other.x).hypot(one.place_m[1] - other.y) < 1e-12);
@@ -245,7 +262,7 @@ fn both_programs_have_the_points_of_a_board_at_the_same_places() {
 fn a_board_that_moved_once_is_named() {
     let folder = Folder::new();
     session(&folder, 30, 17);
-    folder.done(&format!("detect pictures --board {SPEC} --out corners.csv"));
+    folder.run_to_success(&format!("detect pictures --board {SPEC} --out corners.csv"));
     let words = format!(
         "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {SPEC} --out results --verbose"
     );

@@ -5,19 +5,19 @@ use std::fmt::Write as _;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_fit::forensics::DiagnosisKind;
 use poecal_import::{ReadOptions, read};
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_results::model::Model;
 
 use crate::session::{calibration, session};
 
 #[test]
 fn exchanged_columns_are_named_with_evidence() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let text = folder.read("measurements.csv");
     let header = text.lines().next().unwrap();
     let exchanged = header.replace("joint4", "other").replace("joint5", "joint4").replace("other", "joint5");
     folder.write("measurements.csv", text.replacen(header, &exchanged, 1));
-    let checked = folder.done("check robot.urdf measurements.csv");
+    let checked = folder.run_to_success("check robot.urdf measurements.csv");
     assert!(
         checked.contains("diagnosis     exchanging the readings of joint4 and joint5 lowers"),
         "no diagnosis in\n{checked}"
@@ -55,7 +55,7 @@ fn with_turns(text: &str, names: &str, turns: impl Fn(&Pose) -> [f64; 3]) -> Str
 
 #[test]
 fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     // KUKA's A turns about z, B about y, C about x: yaw, pitch, roll.
     let abc = |pose: &Pose| {
         let [roll, pitch, yaw] = rotation::to_rpy(&pose.rotation);
@@ -63,7 +63,7 @@ fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapp
     };
     let text = folder.read("measurements.csv");
     folder.write("kuka.csv", with_turns(&text, "roll[deg],pitch[deg],yaw[deg]", abc));
-    let checked = folder.done("check robot.urdf kuka.csv --json");
+    let checked = folder.run_to_success("check robot.urdf kuka.csv --json");
     let found: serde_json::Value = serde_json::from_str(&checked).unwrap();
     let statement = found["diagnosis"][0]["statement"].as_str().unwrap();
     println!("{statement}");
@@ -77,12 +77,12 @@ fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapp
         "map.toml",
         "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"roll\", \"pitch\", \"yaw\"]\n",
     );
-    assert!(!folder.done("check robot.urdf kuka.csv --columns map.toml").contains("diagnosis"));
+    assert!(!folder.run_to_success("check robot.urdf kuka.csv --columns map.toml").contains("diagnosis"));
 }
 
 #[test]
 fn rotation_vectors_in_degrees_are_no_radians() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let vector = |pose: &Pose| -> [f64; 3] { rotation::log(&pose.rotation).map(f64::to_degrees).into() };
     let text = folder.read("measurements.csv");
     folder.write("ur.csv", with_turns(&text, "rx,ry,rz", vector));
@@ -94,12 +94,12 @@ fn rotation_vectors_in_degrees_are_no_radians() {
         run.err
     );
     folder.write("ur.csv", with_turns(&text, "rx[deg],ry[deg],rz[deg]", vector));
-    assert!(!folder.done("check robot.urdf ur.csv").contains("diagnosis"));
+    assert!(!folder.run_to_success("check robot.urdf ur.csv").contains("diagnosis"));
 }
 
 #[test]
 fn rows_that_stand_twice_are_named_by_their_lines() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let text = folder.read("measurements.csv");
     let copied = text.lines().nth(3).unwrap();
     folder.write("measurements.csv", format!("{text}{copied}\n"));
@@ -113,7 +113,7 @@ fn rows_that_stand_twice_are_named_by_their_lines() {
 
 #[test]
 fn targets_without_names_are_told_to_be_named() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
     let data = read(&[folder.path("measurements.csv")], &model.robot, &ReadOptions::default()).unwrap().data;
     // Along axes of the tool.
@@ -132,7 +132,7 @@ fn targets_without_names_are_told_to_be_named() {
                      measurements.csv:2 and measurements.csv:3), as 3 targets are: add a column `target` that names \
                      which one each row saw";
     let checked: serde_json::Value =
-        serde_json::from_str(&folder.done("check robot.urdf measurements.csv --json")).unwrap();
+        serde_json::from_str(&folder.run_to_success("check robot.urdf measurements.csv --json")).unwrap();
     assert_eq!(checked["diagnosis"].as_array().unwrap().len(), 1, "{checked}");
     assert_eq!(checked["diagnosis"][0]["kind"], "targets_unnamed");
     assert_eq!(checked["diagnosis"][0]["statement"], statement);
@@ -145,7 +145,7 @@ fn targets_without_names_are_told_to_be_named() {
 
 #[test]
 fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let text = folder.read("measurements.csv");
     let mut rows = text.lines();
     let mut made = rows.next().unwrap().to_owned();
@@ -181,14 +181,14 @@ fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them(
         .collect::<Vec<_>>()
         .join("\n");
     folder.write("map.toml", lines);
-    let told = folder.done("calibrate robot.urdf called.csv --columns map.toml --out results");
+    let told = folder.run_to_success("calibrate robot.urdf called.csv --columns map.toml --out results");
     assert!(told.starts_with("verdict       good"), "{told}");
 }
 
 /// For a file that moves a joint beyond the tip link, the message names the link to state instead; there is no message if the column is of no joint.
 #[test]
 fn readings_of_a_joint_beyond_the_tip_link_are_named() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let run = folder.run("calibrate robot.urdf measurements.csv --tip-link link5");
     let words = "measurements.csv: has readings of `joint6`, beyond the tip link: if what was measured moves with it, state the link that carries it, \
                  like `--tip-link tool`";

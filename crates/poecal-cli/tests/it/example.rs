@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::folder::Folder;
-use crate::project::{printed, root, run};
+use crate::project::{output_of, root, run};
 
 /// The command in the first line of a text file by which it was made.
 fn command(text: &str) -> &str {
@@ -14,7 +14,7 @@ fn command(text: &str) -> &str {
 fn the_shipped_points_come_from_the_command_in_their_first_line() {
     let folder = Folder::new();
     let shipped = fs::read_to_string(root().join("examples/elbow/points.csv")).unwrap();
-    printed(command(&shipped), &folder.path("again"));
+    output_of(command(&shipped), &folder.path("again"));
     assert_eq!(fs::read_to_string(folder.path("again/measurements.csv")).unwrap(), shipped);
     let readme = fs::read_to_string(root().join("examples/elbow/README.md")).unwrap();
     assert!(readme.contains(command(&shipped)), "the README names another command");
@@ -26,7 +26,8 @@ fn both_models_of_the_example_are_the_same_robot() {
         let path = root().join("examples/elbow").join(name);
         poecal_results::model::Model::read(path, &Default::default()).unwrap().robot
     };
-    let difference = poecal_formats::proof::Difference::from_robots(&read("robot.urdf"), &read("robot.toml"), 1000);
+    let difference =
+        poecal_formats::proof::Difference::from_robots(&read("robot.urdf"), &read("robot.toml"), 1000);
     // Rounding of the two texts' numbers along six joints.
     assert!(difference.is_within(1e-14, 1e-14), "{difference:?}");
 }
@@ -37,7 +38,7 @@ fn a_simulated_session_without_noise_is_calibrated_exactly() {
         let folder = Folder::new();
         let session = folder.path("session");
         let words = format!("simulate examples/elbow/{model} --kind {kind} --noise 0mm --held-out-count 20");
-        printed(&words, &session);
+        output_of(&words, &session);
         let at = |name: &str| session.join(name).display().to_string();
         let words = format!(
             "calibrate {} {} --validate {} --json",
@@ -46,7 +47,7 @@ fn a_simulated_session_without_noise_is_calibrated_exactly() {
             at("held_out.csv")
         );
         let calibration: serde_json::Value =
-            serde_json::from_str(&printed(&words, &folder.path("out"))).unwrap();
+            serde_json::from_str(&output_of(&words, &folder.path("out"))).unwrap();
         let held_out = &calibration["accuracy"]["held_out"];
         assert_eq!(held_out["count"], 20);
         assert!(held_out["calibrated"]["position_mm"]["max"].as_f64().unwrap() < 1e-6, "{held_out}");
@@ -58,7 +59,7 @@ fn a_simulated_session_without_noise_is_calibrated_exactly() {
 fn the_truth_names_the_robot_that_was_measured() {
     let folder = Folder::new();
     let session = folder.path("session");
-    printed("simulate examples/elbow/robot.toml --device-frame base --noise 0.01deg,0.05mm", &session);
+    output_of("simulate examples/elbow/robot.toml --device-frame base --noise 0.01deg,0.05mm", &session);
     let text = fs::read_to_string(session.join("truth.json")).unwrap();
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(
@@ -89,7 +90,7 @@ fn mistakes_are_told_in_a_sentence_and_nothing_is_written() {
         assert!(run.err.contains(sentence), "{words}: {}", run.err);
         assert!(!folder.path("session").exists());
     }
-    printed("simulate examples/elbow/robot.urdf", &folder.path("session"));
+    output_of("simulate examples/elbow/robot.urdf", &folder.path("session"));
     let again = run("simulate examples/elbow/robot.urdf", &folder.path("session"));
     assert!(again.err.contains("the output folder exists"));
 }

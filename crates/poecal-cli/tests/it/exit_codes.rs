@@ -1,13 +1,13 @@
 //! Exit codes: 0 usable, 1 results that should not be used, 2 refused, 3 no result.
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::Folder;
 use crate::session::{calibration, session};
 
 /// The session with two columns exchanged: the verdict is `do not use`.
-fn exchanged() -> Folder {
-    let folder = session(Kind::POSE);
+fn folder_with_exchange() -> Folder {
+    let folder = session(SessionKind::POSE);
     let text = folder.read("measurements.csv");
     let header = text.lines().next().unwrap();
     let exchanged = header.replace("joint4", "other").replace("joint5", "joint4").replace("other", "joint5");
@@ -17,14 +17,14 @@ fn exchanged() -> Folder {
 
 #[test]
 fn a_usable_calibration_ends_with_0() {
-    let folder = exchanged();
+    let folder = folder_with_exchange();
     assert_eq!(folder.run("calibrate robot.urdf measurements.csv").code, 0);
     assert_eq!(folder.run("calibrate robot.urdf measurements.csv --force --json --require good").code, 0);
 }
 
 #[test]
 fn a_calibration_that_should_not_be_used_is_written_and_ends_with_1() {
-    let folder = exchanged();
+    let folder = folder_with_exchange();
     for more in ["", " --json", " --quiet", " --report none"] {
         let run = folder.run(&format!("calibrate robot.urdf exchanged.csv --force{more}"));
         assert_eq!(run.code, 1, "{more}: {}{}", run.out, run.err);
@@ -41,8 +41,8 @@ fn a_calibration_that_should_not_be_used_is_written_and_ends_with_1() {
 
 #[test]
 fn a_fit_that_did_not_converge_is_written_and_ends_with_1() {
-    let folder = session(Kind::POINT);
-    folder.done("simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far");
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success("simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far");
     // Full steps of free screws and offsets, with hardly more numbers than unknowns, from far away.
     let run = folder.run(
         "calibrate far/nominal.urdf far/measurements.csv --formulation screw-offsets --method gauss-newton --robust off --held-out 0",
@@ -55,7 +55,7 @@ fn a_fit_that_did_not_converge_is_written_and_ends_with_1() {
 
 #[test]
 fn without_any_result_it_ends_with_3_and_nothing_is_written() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let before = folder.listing();
     let run = folder.run("calibrate robot.urdf measurements.csv --sigma-position 1e-200mm");
     assert_eq!(run.code, 3, "{}{}", run.out, run.err);
@@ -65,7 +65,7 @@ fn without_any_result_it_ends_with_3_and_nothing_is_written() {
 
 #[test]
 fn what_is_refused_ends_with_2_and_writes_nothing() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let before = folder.listing();
     for words in [
         "calibrate robot.urdf missing.csv",
@@ -80,7 +80,7 @@ fn what_is_refused_ends_with_2_and_writes_nothing() {
 
 #[test]
 fn a_level_of_vector_instructions_that_is_not_here_is_refused() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let before = folder.listing();
     for level in ["avx1024", "AVX2"] {
         let run = folder.run_with_variable("calibrate robot.urdf measurements.csv", "POECAL_SIMD", level);

@@ -15,7 +15,7 @@ fn line(count: usize) -> Folder {
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.write("station.toml", STATION);
     for robot in 0..count {
-        folder.done(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
+        folder.run_to_success(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
         let text = folder.read(&format!("made{robot}/measurements.csv"));
         std::fs::create_dir_all(folder.path(&format!("inbox/SN{robot}"))).unwrap();
         folder.write(&format!("inbox/SN{robot}/2026-01-0{}.csv", robot + 1), text);
@@ -196,8 +196,8 @@ fn a_station_that_is_none_is_refused_in_a_sentence() {
 #[test]
 fn a_clock_that_jumped_changes_neither_what_is_done_nor_the_report() {
     let folder = line(3);
-    folder.done("fleet station.toml");
-    folder.done("fleet report station.toml");
+    folder.run_to_success("fleet station.toml");
+    folder.run_to_success("fleet report station.toml");
     let page = folder.read("fleet.html");
     let mut year = 2031;
     let lines: Vec<String> = folder
@@ -214,7 +214,7 @@ fn a_clock_that_jumped_changes_neither_what_is_done_nor_the_report() {
     let run = folder.run("fleet station.toml");
     assert_eq!(run.code, 0, "{}", run.err);
     assert_eq!(folder.read("fleet.jsonl").lines().count(), 3, "{}", run.out);
-    folder.done("fleet report station.toml --force");
+    folder.run_to_success("fleet report station.toml --force");
     assert_eq!(folder.read("fleet.html"), page);
 }
 
@@ -224,7 +224,7 @@ fn two_visits(count: usize) -> Folder {
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.write("station.toml", STATION);
     for robot in 0..count {
-        folder.done(&format!(
+        folder.run_to_success(&format!(
             "simulate robot.urdf --kind point --count 60 --seed {robot} --errors 0.05deg,0.3mm --out made{robot}"
         ));
         let text = folder.read(&format!("made{robot}/measurements.csv"));

@@ -71,12 +71,12 @@ impl Folder {
 
     fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
-        command.args(arguments.split_whitespace()).current_dir(self.here());
+        command.args(arguments.split_whitespace()).current_dir(self.root_path());
         command
     }
 
     /// As [`Folder::run`], for a run that must succeed; returns its standard output.
-    pub(crate) fn done(&self, arguments: &str) -> String {
+    pub(crate) fn run_to_success(&self, arguments: &str) -> String {
         let run = self.run(arguments);
         assert_eq!(run.code, 0, "poecal {arguments}\n{}{}", run.out, run.err);
         run.out
@@ -97,7 +97,7 @@ impl Folder {
             }
         }
         let mut listing = BTreeMap::new();
-        add(self.here(), &mut listing);
+        add(self.root_path(), &mut listing);
         listing
     }
 }

@@ -46,7 +46,7 @@ pub(crate) fn rvec(pose: &Pose) -> Vec<f64> {
 /// OpenCV's columns.
 pub(crate) const SEEN: &str = "rvec_x,rvec_y,rvec_z,tvec_x[mm],tvec_y[mm],tvec_z[mm]";
 
-pub(crate) fn seen(pose: &Pose) -> Vec<f64> {
+pub(crate) fn camera_numbers(pose: &Pose) -> Vec<f64> {
     [rvec(pose), place(pose, 1e3)].concat()
 }
 
@@ -77,7 +77,7 @@ fn every_form_of_poses_gives_the_same_camera() {
         &folder,
         "kuka.csv",
         &format!("X,Y,Z,A,B,C,{SEEN}"),
-        all(&|arm, board| [place(arm, 1e3), abc(arm).to_vec(), seen(board)].concat()),
+        all(&|arm, board| [place(arm, 1e3), abc(arm).to_vec(), camera_numbers(board)].concat()),
     );
     table(
         &folder,
@@ -85,14 +85,14 @@ fn every_form_of_poses_gives_the_same_camera() {
         &format!("X,Y,Z,W,P,R,{SEEN}"),
         all(&|arm, board| {
             let [a, b, c] = abc(arm);
-            [place(arm, 1e3), vec![c, b, a], seen(board)].concat()
+            [place(arm, 1e3), vec![c, b, a], camera_numbers(board)].concat()
         }),
     );
     table(
         &folder,
         "ur.csv",
         &format!("x,y,z,rx,ry,rz,{SEEN}"),
-        all(&|arm, board| [place(arm, 1.0), rvec(arm), seen(board)].concat()),
+        all(&|arm, board| [place(arm, 1.0), rvec(arm), camera_numbers(board)].concat()),
     );
     table(
         &folder,
@@ -100,7 +100,7 @@ fn every_form_of_poses_gives_the_same_camera() {
         &format!("x,y,z,q1,q2,q3,q4,{SEEN}"),
         all(&|arm, board| {
             let [x, y, z, w] = arm.quaternion_xyzw();
-            [place(arm, 1e3), vec![w, x, y, z], seen(board)].concat()
+            [place(arm, 1e3), vec![w, x, y, z], camera_numbers(board)].concat()
         }),
     );
     let ros = "flange.position.x,flange.position.y,flange.position.z,flange.orientation.x,flange.orientation.y,flange.orientation.z,flange.orientation.w";
@@ -120,17 +120,23 @@ fn every_form_of_poses_gives_the_same_camera() {
             let row = |i: usize| {
                 [arm.rotation[(i, 0)], arm.rotation[(i, 1)], arm.rotation[(i, 2)], arm.translation[i]]
             };
-            [row(0).to_vec(), row(1).to_vec(), row(2).to_vec(), vec![0.0, 0.0, 0.0, 1.0], seen(board)]
-                .concat()
+            [
+                row(0).to_vec(),
+                row(1).to_vec(),
+                row(2).to_vec(),
+                vec![0.0, 0.0, 0.0, 1.0],
+                camera_numbers(board),
+            ]
+            .concat()
         }),
     );
-    let first = camera(&folder.done("hand-eye kuka.csv --camera in-hand --json")).0;
+    let first = camera(&folder.run_to_success("hand-eye kuka.csv --camera in-hand --json")).0;
     assert!(
         (first[0] - 0.04).abs() < 1e-4 && (first[1] + 0.06).abs() < 1e-4 && (first[2] - 0.09).abs() < 1e-4,
         "{first:?}"
     );
     for name in ["fanuc", "ur", "abb", "ros", "matrix"] {
-        let found = camera(&folder.done(&format!("hand-eye {name}.csv --camera in-hand --json"))).0;
+        let found = camera(&folder.run_to_success(&format!("hand-eye {name}.csv --camera in-hand --json"))).0;
         assert!(first.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{name}: {first:?} {found:?}");
     }
 }
@@ -140,10 +146,10 @@ fn every_form_of_poses_gives_the_same_camera() {
 fn a_calibration_exports_the_transform_that_hand_eye_finds() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.done("simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell");
-    folder.done("hand-eye cell/measurements.csv --robot robot.urdf --camera beside --out eye --frame-names base_link,tool,device,measured");
-    folder.done("calibrate robot.urdf cell/measurements.csv --fix joints --report none");
-    folder.done("export poecal-out/calibration.json --format tf --out tf.txt");
+    folder.run_to_success("simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell");
+    folder.run_to_success("hand-eye cell/measurements.csv --robot robot.urdf --camera beside --out eye --frame-names base_link,tool,device,measured");
+    folder.run_to_success("calibrate robot.urdf cell/measurements.csv --fix joints --report none");
+    folder.run_to_success("export poecal-out/calibration.json --format tf --out tf.txt");
     let (own, theirs) = (folder.read("tf.txt"), folder.read("eye/transforms.txt"));
     let heads = |text: &str| -> Vec<String> {
         let mut all: Vec<_> = text.lines().filter(|line| line.starts_with('#')).map(str::to_owned).collect();
@@ -183,11 +189,11 @@ fn two_files_are_joined_by_names_and_results_are_written_once() {
         .iter()
         .enumerate()
         .rev()
-        .map(|(k, (_, board))| format!("{k:04},{}", text(seen(board))))
+        .map(|(k, (_, board))| format!("{k:04},{}", text(camera_numbers(board))))
         .collect();
     fs::write(folder.path("board.csv"), format!("image,{SEEN}\n{}\n", board.join("\n"))).unwrap();
     let said = folder
-        .done("hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board");
+        .run_to_success("hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board");
     assert!(said.contains("12 of 12 fitted") && said.contains("eye in flange: (4"), "{said}");
     for name in [
         "hand_eye.json",
@@ -201,7 +207,7 @@ fn two_files_are_joined_by_names_and_results_are_written_once() {
     }
     let again = folder.run("hand-eye arm.csv board.csv --camera in-hand --out out");
     assert_eq!((again.code, again.err.contains("--force")), (2, true), "{}", again.err);
-    folder.done("hand-eye arm.csv board.csv --camera in-hand --out out --force");
+    folder.run_to_success("hand-eye arm.csv board.csv --camera in-hand --out out --force");
 }
 
 #[test]
@@ -212,12 +218,14 @@ fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
     let write = |name: &str, header: &str, form: &dyn Fn(usize) -> Vec<f64>| {
         table(&folder, name, header, (0..rows.len()).map(form));
     };
-    let usual = |k: usize| [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), seen(&rows[k].1)].concat();
+    let usual =
+        |k: usize| [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), camera_numbers(&rows[k].1)].concat();
     write("radians.csv", &kuka, &|k| {
-        [place(&rows[k].0, 1e3), abc(&rows[k].0).map(f64::to_radians).to_vec(), seen(&rows[k].1)].concat()
+        [place(&rows[k].0, 1e3), abc(&rows[k].0).map(f64::to_radians).to_vec(), camera_numbers(&rows[k].1)]
+            .concat()
     });
     write("order.csv", &kuka, &|k| {
-        [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), seen(&rows[13 - k].1)].concat()
+        [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), camera_numbers(&rows[13 - k].1)].concat()
     });
     write("metres.csv", &kuka.replace("X,Y,Z", "X[m],Y[m],Z[m]"), &usual);
     write("degrees.csv", &kuka.replace("A,B,C", "A[rad],B[rad],C[rad]"), &usual);
@@ -231,7 +239,7 @@ fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
             arm.rotation[(1, other)] *= -1.0;
             arm.rotation[(other, 1)] *= -1.0;
         }
-        [place(&arm, 1e3), abc(&arm).to_vec(), seen(&rows[k].1)].concat()
+        [place(&arm, 1e3), abc(&arm).to_vec(), camera_numbers(&rows[k].1)].concat()
     });
     let before = folder.listing();
     for (name, expected) in [
@@ -259,9 +267,9 @@ fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
 #[test]
 fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
     let folder = Folder::new();
-    folder.done("init --tcp --out touches");
+    folder.run_to_success("init --tcp --out touches");
     assert!(folder.read("touches/touches.csv").contains("point,tip"));
-    folder.done("init --hand-eye beside --out poses");
+    folder.run_to_success("init --hand-eye beside --out poses");
     let (end, shaft, pin) = ([0.012, -0.003, 0.152], [0.012, -0.003, 0.092], [0.6, 0.1, 0.05]);
     let mut lines = vec!["X,Y,Z,A,B,C,tip".to_owned()];
     for (name, tip) in [("end", end), ("shaft", shaft)] {
@@ -278,7 +286,7 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
         }
     }
     fs::write(folder.path("touches.csv"), lines.join("\n")).unwrap();
-    let found: serde_json::Value = serde_json::from_str(&folder.done("tcp touches.csv --json")).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&folder.run_to_success("tcp touches.csv --json")).unwrap();
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["tips"][0]["position_m"][2]) - 0.152).abs() < 5e-5, "{found}");
     assert!(number(&found["axis"]["direction"][2]) > 0.9999, "{found}");
@@ -292,7 +300,7 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
         .map(|it| it.0)
         .collect();
     fs::write(folder.path("one.csv"), one.join("\n")).unwrap();
-    let said = folder.done("tcp one.csv --out tip");
+    let said = folder.run_to_success("tcp one.csv --out tip");
     assert!(said.contains("good: tip within") || said.contains("bounds: tip within"), "{said}");
     let texts = [said, folder.read("tip/transforms.txt"), folder.read("tip/tcp.json")].concat();
     for never in ["A 0", "tooldata", "[1,[0,0,1]", "\"matrix\"", "quaternion"] {
@@ -360,11 +368,11 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         &folder,
         "poses.csv",
         &format!("X,Y,Z,A,B,C,{SEEN}"),
-        rows.iter().map(|(arm, board)| [place(arm, 1e3), abc(arm).to_vec(), seen(board)].concat()),
+        rows.iter().map(|(arm, board)| [place(arm, 1e3), abc(arm).to_vec(), camera_numbers(board)].concat()),
     );
     let run = "--camera in-hand --lens lens.csv --markers chessboard:6x5:30mm --json";
     let plain: serde_json::Value =
-        serde_json::from_str(&folder.done(&format!("hand-eye arm.csv corners.csv {run}"))).unwrap();
+        serde_json::from_str(&folder.run_to_success(&format!("hand-eye arm.csv corners.csv {run}"))).unwrap();
     let of = |found: &serde_json::Value, k: usize| found["camera_frame"]["position_m"][k].as_f64().unwrap();
     for (k, truth) in [0.04, -0.06, 0.09].into_iter().enumerate() {
         let bound = plain["camera_frame"]["bound95_mm"].as_f64().unwrap();
@@ -372,14 +380,14 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         assert!(bound < 1.0, "{bound}");
     }
     let turned: serde_json::Value = serde_json::from_str(
-        &folder.done(&format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv")),
+        &folder.run_to_success(&format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv")),
     )
     .unwrap();
     for k in 0..3 {
         assert!((of(&plain, k) - of(&turned, k)).abs() < 1e-6, "{plain} {turned}");
     }
     assert_eq!(turned["findings"][0]["kind"], "other_pose", "{turned}");
-    let unknown: serde_json::Value = serde_json::from_str(&folder.done(
+    let unknown: serde_json::Value = serde_json::from_str(&folder.run_to_success(
         &format!("hand-eye arm.csv corners.csv {run} --out found").replace("lens.csv", "unknown:720x600"),
     ))
     .unwrap();
@@ -395,14 +403,14 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     for (k, truth) in [0.04, -0.06, 0.09].into_iter().enumerate() {
         assert!((of(&unknown, k) - truth).abs() < 1.5e-3 * bound(&unknown), "{unknown}");
     }
-    let said = folder.done(
+    let said = folder.run_to_success(
         "hand-eye arm.csv corners.csv --camera in-hand --lens unknown:720x600 --markers chessboard:6x5:30mm",
     );
     assert!(said.contains("\nlens          fx ") && said.contains(": camera within "), "{said}");
     // The fitted lens can be stated, and results in the same camera.
     fs::copy(folder.path("found/lens.csv"), folder.path("again.csv")).unwrap();
     let again: serde_json::Value = serde_json::from_str(
-        &folder.done(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
+        &folder.run_to_success(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
     )
     .unwrap();
     for k in 0..3 {
@@ -443,7 +451,7 @@ fn joint_readings_stand_for_the_arms_poses_and_say_whether_to_fit_the_arm() {
     let folder = Folder::new();
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
     let robot = format!("{examples}/elbow/robot.urdf");
-    let found: serde_json::Value = serde_json::from_str(&folder.done(&format!(
+    let found: serde_json::Value = serde_json::from_str(&folder.run_to_success(&format!(
         "hand-eye {examples}/howto/camera.csv --units mm --camera in-hand --robot {robot} --out out --json"
     )))
     .unwrap();
@@ -455,7 +463,7 @@ fn joint_readings_stand_for_the_arms_poses_and_say_whether_to_fit_the_arm() {
     // The advice, as it is printed.
     let command = found["arm"]["command"].as_str().unwrap();
     let command = command.strip_prefix("poecal ").unwrap();
-    let said = folder.done(&format!("{command} --out fitted"));
+    let said = folder.run_to_success(&format!("{command} --out fitted"));
     assert!(said.contains("held out"), "{said}");
     let run = folder
         .run(&format!("hand-eye {examples}/howto/hand_eye.csv --camera in-hand --tip-link tool --quiet"));

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use poecal_numerics::text::visible_lines;
 use poecal_results::model::Model;
 
@@ -41,7 +41,8 @@ fn folder_of(names: [&str; 6]) -> Folder {
     folder.write("robot.urdf", urdf);
     folder.write("map.toml", map);
     let model = Model::read(folder.path("plain.urdf"), &Default::default()).unwrap();
-    let data = Simulation { count: 60, ..Simulation::default() }.run(&model.robot, Kind::POINT).unwrap().data;
+    let data =
+        Simulation { count: 60, ..Simulation::default() }.run(&model.robot, SessionKind::POINT).unwrap().data;
     let mut text = format!("id,target,\u{1b}[5mextra\u{202d},{},x,y,z\n", data.reading_names().join(","));
     for (row, observation) in data.observations.iter().enumerate() {
         let [x, y, z]: [f64; 3] = observation.measurement.pose().translation.into();
@@ -90,14 +91,14 @@ fn names_and_cells_reach_people_as_they_can_see_them() {
         assert_eq!(run.code, 0, "poecal {words}\n{}{}", run.out, run.err);
         assert_shown(&words, &run);
     }
-    let check = folder.done(&format!("check robot.urdf points.csv {with}"));
+    let check = folder.run_to_success(&format!("check robot.urdf points.csv {with}"));
     assert!(check.contains("\\u{9b}2J\\u{9d}0;PWNED\\u{9c}: revolute"), "{check}");
     assert!(check.contains("J6\\u{a}verdict") && check.contains("\\u{202e}J4\\u{2066}rtl"), "{check}");
     assert!(check.contains("\\u{1b}[5mextra\\u{202d}"), "{check}");
     // A cell that a spreadsheet would run is marked, and read back unchanged.
     let residuals = folder.read("out/residuals.csv");
     assert!(residuals.lines().any(|line| line.contains(",'=1+1,fit,'=1+1,")), "{residuals}");
-    let predicted = folder.done(&format!("predict robot.urdf points.csv {with}"));
+    let predicted = folder.run_to_success(&format!("predict robot.urdf points.csv {with}"));
     assert!(predicted.contains("\n'@SUM(A1),") && predicted.contains("\n'=x,"), "{predicted}");
     let calibration = crate::session::calibration(&folder, "out");
     assert!(calibration.targets.contains_key("=1+1"), "{:?}", calibration.targets);

@@ -23,7 +23,7 @@ fn folder() -> Folder {
 #[test]
 fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
     let folder = folder();
-    let out = folder.done("plan column.toml --rows still.csv --kind point --sigma-position 0.1mm");
+    let out = folder.run_to_success("plan column.toml --rows still.csv --kind point --sigma-position 0.1mm");
     for words in [
         "to measure    40 points: still.csv\n",
         "noise         0.1000 mm each component\n",
@@ -38,7 +38,7 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
     assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
     // With the slide moving, also in another file, nothing is undetermined.
     for files in ["all.csv", "still.csv --rows all.csv"] {
-        let out = folder.done(&format!("plan column.toml --rows {files} --kind point"));
+        let out = folder.run_to_success(&format!("plan column.toml --rows {files} --kind point"));
         assert!(out.contains("determined    13 of 13 unknowns") && !out.contains("undetermined"), "{out}");
     }
 }
@@ -47,7 +47,7 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
 fn json_holds_the_same() {
     let folder = folder();
     let of = |arguments: &str| -> serde_json::Value {
-        serde_json::from_str(&folder.done(&format!("plan column.toml --rows {arguments} --json"))).unwrap()
+        serde_json::from_str(&folder.run_to_success(&format!("plan column.toml --rows {arguments} --json"))).unwrap()
     };
     let found = of("still.csv --kind pose");
     assert_eq!(

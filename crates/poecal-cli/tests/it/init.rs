@@ -39,7 +39,7 @@ joint = [
 position = [30, 0, 60]
 "#;
 
-fn written(robot: Robot, form: ModelFormat) -> String {
+fn convert_robot(robot: Robot, form: ModelFormat) -> String {
     convert(&Model { robot, source: ModelSource::Toml, path: "robot".into() }, form).unwrap().text
 }
 
@@ -106,9 +106,9 @@ fn filled_project_calibrates(model: &str, text: &str, chain: &str, measure: &str
 
 #[test]
 fn a_filled_project_calibrates_without_editing_anything_else() {
-    let gantry = written(gantry(), ModelFormat::Urdf);
-    let scara = written(scara(), ModelFormat::Toml);
-    let seven = written(seven_axis(), ModelFormat::Urdf);
+    let gantry = convert_robot(gantry(), ModelFormat::Urdf);
+    let scara = convert_robot(scara(), ModelFormat::Toml);
+    let seven = convert_robot(seven_axis(), ModelFormat::Urdf);
     for measure in ["points", "poses"] {
         filled_project_calibrates("elbow.urdf", ROBOT, "", measure);
         filled_project_calibrates("gantry.urdf", &gantry, "", measure);
@@ -143,7 +143,7 @@ fn the_model_is_copied_as_it_is() {
 fn a_project_overwrites_nothing() {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
-    folder.done("init robot.urdf --out cell");
+    folder.run_to_success("init robot.urdf --out cell");
     folder.write("cell/measurements.csv", "filled in");
     fs::remove_file(folder.path("cell/robot.urdf")).unwrap();
     let before = folder.listing();
@@ -178,8 +178,8 @@ fn a_project_overwrites_nothing() {
 fn project() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
-    folder.done("init robot.urdf --out cell");
-    folder.done("simulate robot.urdf --kind point --out simulated");
+    folder.run_to_success("init robot.urdf --out cell");
+    folder.run_to_success("simulate robot.urdf --kind point --out simulated");
     fs::copy(folder.path("simulated/measurements.csv"), folder.path("cell/measurements.csv")).unwrap();
     folder
 }
@@ -191,14 +191,14 @@ fn settings_are_seen_from_their_folder_and_give_way_to_what_is_typed() {
         "cell/poecal.toml",
         "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\nout = 'there'\nseed = 4\nsigma_position = '0.05mm'\n",
     );
-    folder.done("calibrate --settings cell/poecal.toml");
+    folder.run_to_success("calibrate --settings cell/poecal.toml");
     let inputs = calibration(&folder, "cell/there").inputs;
     let command = "poecal calibrate --sigma-position=0.05mm --seed=4 cell/robot.urdf cell/measurements.csv";
     assert_eq!(inputs.command.as_deref(), Some(command));
     // The recorded command makes the same calibration, and a typed option replaces the one in the file.
-    folder.done(&format!("{} --out again", command.strip_prefix("poecal ").unwrap()));
+    folder.run_to_success(&format!("{} --out again", command.strip_prefix("poecal ").unwrap()));
     assert_eq!(folder.read("again/residuals.csv"), folder.read("cell/there/residuals.csv"));
-    folder.done("calibrate --settings cell/poecal.toml --seed 5 --out here robot.urdf");
+    folder.run_to_success("calibrate --settings cell/poecal.toml --seed 5 --out here robot.urdf");
     let inputs = calibration(&folder, "here").inputs;
     let command = "poecal calibrate --sigma-position=0.05mm --seed 5 robot.urdf cell/measurements.csv";
     assert_eq!(inputs.command.as_deref(), Some(command));
@@ -217,7 +217,7 @@ fn files_are_checked_as_the_settings_say() {
         "cell/measurements.csv",
         "\"turn, left[deg]\",slide[mm],hand[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5,6\n",
     );
-    let by_settings = folder.done("check --settings cell/poecal.toml");
+    let by_settings = folder.run_to_success("check --settings cell/poecal.toml");
     let typed = words("check cell/robot.urdf cell/measurements.csv --tip-link 'left tool'");
     assert_eq!(by_settings, folder.run_words(&typed).out);
     assert!(
@@ -247,11 +247,11 @@ fn files_are_checked_as_the_settings_say() {
 #[test]
 fn an_option_that_is_typed_replaces_settings_that_it_excludes() {
     let folder = project();
-    folder.done("simulate robot.urdf --kind point --count 20 --noise 0.06mm --out other");
+    folder.run_to_success("simulate robot.urdf --kind point --count 20 --noise 0.06mm --out other");
     let settings = "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\ntrain_where = 'stage=1'\n";
     folder.write("cell/poecal.toml", settings);
     assert_eq!(folder.run("calibrate --settings cell/poecal.toml").code, 2);
-    folder.done("calibrate --settings cell/poecal.toml --validate other/measurements.csv");
+    folder.run_to_success("calibrate --settings cell/poecal.toml --validate other/measurements.csv");
 }
 
 #[test]

@@ -8,7 +8,7 @@ pub(crate) const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examp
 
 /// Header and rows of a simulated session of an elbow with errors, cells by columns: joints first, then the measured quantities.
 pub(crate) fn session(folder: &Folder, kind: &str, count: usize) -> (Vec<String>, Vec<Vec<String>>, usize) {
-    folder.done(&format!("simulate {MODEL} --kind {kind} --count {count} --seed 3 --out made"));
+    folder.run_to_success(&format!("simulate {MODEL} --kind {kind} --count {count} --seed 3 --out made"));
     let text = folder.read("made/measurements.csv");
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
@@ -52,7 +52,7 @@ fn two_files_in_either_order_are_one_session() {
         table(&folder, "named.csv", &header[..joints], &left, Some(&|row| format!("j{}", row + 1)));
         let turned: Vec<&[String]> = right.iter().rev().copied().collect();
         table(&folder, "points.csv", &header[joints..], &turned, Some(&|row| format!("P{}", 40 - row)));
-        let whole = folder.done(&format!("calibrate {MODEL} made/measurements.csv --out whole"));
+        let whole = folder.run_to_success(&format!("calibrate {MODEL} made/measurements.csv --out whole"));
         for (at, files) in
             ["joints.csv seen.csv", "seen.csv joints.csv", "named.csv points.csv"].into_iter().enumerate()
         {
@@ -109,7 +109,7 @@ fn lost_and_double_rows_are_named_and_all_others_paired() {
     }
     let hash = file["inputs"]["sha256"]["points.csv"].as_str().unwrap();
     assert!(page.contains(hash) && page.contains("39 points"));
-    folder.done("report out/calibration.json -o again.html");
+    folder.run_to_success("report out/calibration.json -o again.html");
     assert!(folder.read("again.html") == page);
 }
 

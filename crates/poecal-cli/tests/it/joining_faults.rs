@@ -6,7 +6,7 @@ use crate::folder::{Folder, Run};
 use crate::joining::{MODEL, session, table};
 
 /// 40 configurations in two files with names, `joints.csv` and `points.csv`, and the cells of the points: name, x, y, z.
-fn named() -> (Folder, String, Vec<Vec<String>>) {
+fn folder_with_names() -> (Folder, String, Vec<Vec<String>>) {
     let folder = Folder::new();
     let (header, rows, joints) = session(&folder, "point", 40);
     let left: Vec<&[String]> = rows.iter().map(|row| &row[..joints]).collect();
@@ -32,7 +32,7 @@ type Fault = dyn Fn(&mut Vec<Vec<String>>);
 
 #[test]
 fn single_wrong_pairs_are_named_by_line() {
-    let (folder, header, rows) = named();
+    let (folder, header, rows) = folder_with_names();
     let run = import(&folder, "joints.csv points.csv");
     assert_eq!(run.code, 0, "{}", run.err);
     assert!(!run.err.contains("warning"), "{}", run.err);
@@ -67,7 +67,7 @@ fn single_wrong_pairs_are_named_by_line() {
 
 #[test]
 fn what_hardly_fits_is_refused_unless_a_diagnosis_explains_it() {
-    let (folder, header, rows) = named();
+    let (folder, header, rows) = folder_with_names();
     // For a robot that differs much from its model, the join is right.
     let text = folder.read("joints.csv");
     let turned = |joint: usize, by: f64, factor: f64| -> String {
@@ -104,7 +104,7 @@ fn what_hardly_fits_is_refused_unless_a_diagnosis_explains_it() {
 
 #[test]
 fn the_file_that_is_neither_is_named() {
-    let (folder, _, _) = named();
+    let (folder, _, _) = folder_with_names();
     fs::write(folder.path("empty.csv"), "").unwrap();
     fs::write(folder.path("unit.csv"), "id,x[foo],y,z\nP1,1,2,3\n").unwrap();
     fs::write(folder.path("head.csv"), "id,y[mm],z[mm]\nP1,2,3\n").unwrap();
@@ -132,7 +132,7 @@ fn the_file_that_is_neither_is_named() {
 
 #[test]
 fn names_that_contradict_the_order_are_said_and_not_dropped() {
-    let (folder, header, rows) = named();
+    let (folder, header, rows) = folder_with_names();
     let mut shifted = rows.clone();
     for (at, row) in shifted.iter_mut().enumerate() {
         row[0] = format!("P{}", (at + 1) % 40 + 1);
@@ -157,7 +157,7 @@ fn names_that_contradict_the_order_are_said_and_not_dropped() {
 
 #[test]
 fn what_no_file_has_measured_is_warned_of_once() {
-    let (folder, header, rows) = named();
+    let (folder, header, rows) = folder_with_names();
     write(&folder, "first.csv", &header, &rows[..20]);
     write(&folder, "second.csv", &header, &rows[20..39]);
     let run = import(&folder, "joints.csv first.csv second.csv");
@@ -168,7 +168,7 @@ fn what_no_file_has_measured_is_warned_of_once() {
 
 #[test]
 fn files_that_have_changed_since_they_were_imported_are_named() {
-    let (folder, header, mut rows) = named();
+    let (folder, header, mut rows) = folder_with_names();
     assert_eq!(import(&folder, "joints.csv points.csv").code, 0);
     let again = "import --settings out.map.toml --out again.csv --force";
     let run = folder.run(again);

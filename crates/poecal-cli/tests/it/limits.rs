@@ -11,7 +11,7 @@ use crate::workbook::workbook;
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
-    folder.done("simulate robot.urdf --kind point --count 30 --out made");
+    folder.run_to_success("simulate robot.urdf --kind point --count 30 --out made");
     let text = folder.read("made/measurements.csv");
     let rows: Vec<Vec<String>> = text
         .lines()
@@ -25,7 +25,7 @@ fn folder() -> Folder {
     far.resize(9_000, Vec::new());
     far.push([vec![String::new(); 20], vec!["1".to_owned()]].concat());
     fs::write(folder.path("far.xlsx"), workbook(&[("Rows", &far)])).unwrap();
-    folder.done("export robot.urdf --format toml --out robot.toml");
+    folder.run_to_success("export robot.urdf --format toml --out robot.toml");
     folder
 }
 
@@ -195,9 +195,9 @@ fn pictures_beyond_a_limit_are_refused() {
         let run = folder.run(&format!("detect {name} --board {board} --limit {limit} --out corners.csv"));
         assert!(run.code == 2 && run.err.contains(part), "{limit}: {}{}", run.out, run.err);
     }
-    let most = poecal_storage::limits::Limit::Pixels.row().usual;
+    let most = poecal_storage::limits::ResourceLimit::Pixels.row().usual;
     assert_eq!(
-        (most, poecal_storage::limits::Limit::Dots.row().usual as usize),
+        (most, poecal_storage::limits::ResourceLimit::Dots.row().usual as usize),
         (poecal_detect::MOST_PIXELS, poecal_detect::MOST_DOTS)
     );
 }

@@ -4,14 +4,16 @@ use std::fmt::Write as _;
 use std::fs;
 
 use crate::folder::Folder;
-use crate::recorded::{MODEL, Row, between, held_out, joined, session, stream, turned};
+use crate::recorded::{
+    MODEL, Row, held_out, interpolate_rows, interpolate_turn, join_numbers, session, stream,
+};
 
 /// The positions of four markers on the tool, metres in the tool's frame.
 const MARKERS: [[f64; 3]; 4] =
     [[0.06, 0.0, 0.01], [-0.04, 0.05, 0.0], [-0.02, -0.07, 0.03], [0.01, 0.02, 0.09]];
 
 /// A point of a frame with a quaternion x, y, z, w, mm.
-fn placed(place: &[f64], [x, y, z, w]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
+fn place_point(place: &[f64], [x, y, z, w]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
     let m = [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
         [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
@@ -26,9 +28,11 @@ fn takes(rows: &[Row]) -> (String, String, String) {
     let next = |row: usize| (row + 1).min(rows.len() - 1);
     let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
     for (time, row, share) in stream(rows.len(), 50) {
-        let radians: Vec<f64> =
-            between(&rows[row].0, &rows[next(row)].0, share).iter().map(|it| it.to_radians()).collect();
-        writeln!(log, "{:.6},{}", 100.0 + time, joined(&radians, 9, ",")).unwrap();
+        let radians: Vec<f64> = interpolate_rows(&rows[row].0, &rows[next(row)].0, share)
+            .iter()
+            .map(|it| it.to_radians())
+            .collect();
+        writeln!(log, "{:.6},{}", 100.0 + time, join_numbers(&radians, 9, ",")).unwrap();
     }
     let mut take = "Format Version,1.24,Take Name,A,Export Frame Rate,50.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n".to_owned();
     let mut head = |label: &str, of: &dyn Fn(usize) -> String| {
@@ -41,10 +45,10 @@ fn takes(rows: &[Row]) -> (String, String, String) {
     head("Frame,Time (Seconds),", &|k| ["X", "Y", "Z"][k % 3].to_owned());
     let mut damaged = take.clone();
     for (frame, (time, row, share)) in stream(rows.len(), 50).into_iter().enumerate() {
-        let place = between(&rows[row].1, &rows[next(row)].1, share);
-        let turn = turned(rows[row].2, rows[next(row)].2, share);
+        let place = interpolate_rows(&rows[row].1, &rows[next(row)].1, share);
+        let turn = interpolate_turn(rows[row].2, rows[next(row)].2, share);
         let mut cells: Vec<String> =
-            MARKERS.iter().map(|it| joined(&placed(&place, turn, *it), 4, ",")).collect();
+            MARKERS.iter().map(|it| join_numbers(&place_point(&place, turn, *it), 4, ",")).collect();
         cells.push(",,".to_owned());
         writeln!(take, "{frame},{time:.6},{}", cells.join(",")).unwrap();
         if (400..700).contains(&frame) {
@@ -103,7 +107,8 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
     let rows = session(&folder, 36);
     let names = "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]";
     let axes = "x[mm],y[mm],z[mm]";
-    let (joints, place) = (|row: &Row| joined(&row.0, 6, ","), |row: &Row| joined(&row.1, 4, ","));
+    let (joints, place) =
+        (|row: &Row| join_numbers(&row.0, 6, ","), |row: &Row| join_numbers(&row.1, 4, ","));
     let write = |name: &str, header: &str, of: &dyn Fn(usize, &Row) -> String| {
         table(&folder, name, header, &rows, of)
     };
@@ -119,14 +124,15 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
     write("whole.csv", &format!("{names},{axes},note"), &|k, row| {
         format!("{k},{},{}", joints(row), place(row))
     });
-    write("mirrored.csv", axes, &|_, row| joined(&[row.1[0], -row.1[1], row.1[2]], 4, ","));
+    write("mirrored.csv", axes, &|_, row| join_numbers(&[row.1[0], -row.1[1], row.1[2]], 4, ","));
     let first = |of: &dyn Fn(usize, &Row) -> String, name: &str, some: &[Row]| {
         table(&folder, name, &format!("{names},{axes}"), some, of);
     };
     first(&|_, row| format!("{},{}", joints(row), place(row)), "first.csv", &rows[..18]);
     for (name, factor) in [("cm.csv", 0.1), ("inches.csv", 1.0 / 25.4), ("metres.csv", 1e-3)] {
-        let of =
-            |_: usize, row: &Row| format!("{},{}", joints(row), joined(&row.1.map(|it| it * factor), 7, ","));
+        let of = |_: usize, row: &Row| {
+            format!("{},{}", joints(row), join_numbers(&row.1.map(|it| it * factor), 7, ","))
+        };
         first(&of, name, &rows[18..]);
     }
     let before = folder.listing();
@@ -177,12 +183,12 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
     let rows = session(&folder, 30);
     let names = "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]";
     table(&folder, "joints.csv", &format!("id,{names}"), &rows, &|k, row| {
-        format!("P{},{}", k + 1, joined(&row.0, 9, ","))
+        format!("P{},{}", k + 1, join_numbers(&row.0, 9, ","))
     });
     table(&folder, "points.csv", "id,x[mm],y[mm],z[mm]", &rows, &|k, row| {
-        format!("P{},{}", k + 1, joined(&row.1, 4, ","))
+        format!("P{},{}", k + 1, join_numbers(&row.1, 4, ","))
     });
-    folder.done(&format!("predict {MODEL} joints.csv --out nominal.csv"));
+    folder.run_to_success(&format!("predict {MODEL} joints.csv --out nominal.csv"));
     let text = folder.read("nominal.csv");
     let mut lines = text.lines().filter(|it| !it.starts_with('#'));
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -198,7 +204,7 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
         .collect();
     let (expected, _) = held_out(&folder, "joints.csv points.csv");
     let angles = "0.1,0.2,0.3";
-    let set = |of: &[f64; 3]| format!("{},{angles}", joined(of, 4, ","));
+    let set = |of: &[f64; 3]| format!("{},{angles}", join_numbers(of, 4, ","));
     let columns = |before: &str| {
         let name = |it: &str| {
             if "xyz".contains(it) { format!("{before}{it}[mm]") } else { format!("{before}{it}[deg]") }
@@ -229,7 +235,7 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
     }
     // In one file with the joints.
     table(&folder, "whole.csv", &format!("{named},{names}"), &rows, &|k, row| {
-        format!("P{},{},{},{}", k + 1, set(&nominal[k]), set(&row.1), joined(&row.0, 9, ","))
+        format!("P{},{},{},{}", k + 1, set(&nominal[k]), set(&row.1), join_numbers(&row.0, 9, ","))
     });
     let (found, said) = held_out(&folder, "whole.csv");
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}: {said}");

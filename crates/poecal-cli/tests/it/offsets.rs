@@ -1,6 +1,6 @@
 //! `poecal offsets`, and `poecal export --offset`, which it undoes.
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, session};
@@ -35,8 +35,8 @@ fn offsets_that_were_put_in_are_found() {
     let folder = folder();
     for form in ["urdf", "toml"] {
         let put_in = "--offset turn=0.5deg --offset slide=-1.2mm --offset nod=-170deg";
-        folder.done(&format!("export column.toml {put_in} --out actual.{form} --quiet"));
-        let out = folder.done(&format!("offsets column.toml actual.{form}"));
+        folder.run_to_success(&format!("export column.toml {put_in} --out actual.{form} --quiet"));
+        let out = folder.run_to_success(&format!("offsets column.toml actual.{form}"));
         for words in [
             "nominal       column.toml\n",
             "base          kept: both models state it\n",
@@ -55,8 +55,8 @@ fn offsets_that_were_put_in_are_found() {
 #[test]
 fn json_holds_the_same_and_goes_into_a_file() {
     let folder = folder();
-    folder.done("export column.toml --offset turn=0.5deg --offset slide=1.2mm --out actual.toml");
-    assert_eq!(folder.done("offsets column.toml actual.toml --free tip --json --out offsets.json"), "");
+    folder.run_to_success("export column.toml --offset turn=0.5deg --offset slide=1.2mm --out actual.toml");
+    assert_eq!(folder.run_to_success("offsets column.toml actual.toml --free tip --json --out offsets.json"), "");
     let found = json(&folder.read("offsets.json"));
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["joints"][0]["offset_deg"]) - 0.5).abs() < 1e-12);
@@ -71,17 +71,17 @@ fn json_holds_the_same_and_goes_into_a_file() {
     assert!(number(&predictions["without_offsets"]["position_rms_mm"]) > 1.0);
     assert!(number(&predictions["with_offsets"]["position_max_mm"]) < 1e-9);
     // The table is written to a file as well, also with --quiet; standard output then has none.
-    folder.done("offsets column.toml actual.toml --quiet --out table.txt");
+    folder.run_to_success("offsets column.toml actual.toml --quiet --out table.txt");
     assert!(folder.read("table.txt").contains("tip at zero"));
-    assert_eq!(folder.done("offsets column.toml actual.toml --quiet"), "");
+    assert_eq!(folder.run_to_success("offsets column.toml actual.toml --quiet"), "");
 }
 
 #[test]
 fn a_calibration_has_a_base_and_a_tip_of_its_own() {
-    let folder = session(Kind::POSE);
-    folder.done("calibrate robot.urdf measurements.csv --out anywhere --quiet");
+    let folder = session(SessionKind::POSE);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out anywhere --quiet");
     let ends = |arguments: &str| {
-        let out = folder.done(&format!("offsets robot.urdf {arguments} --json"));
+        let out = folder.run_to_success(&format!("offsets robot.urdf {arguments} --json"));
         let found = json(&out);
         ["base", "tip"]
             .map(|end| format!("{}: {}", found[end]["frame"], found[end]["reason"]).replace('"', ""))
@@ -96,7 +96,7 @@ fn a_calibration_has_a_base_and_a_tip_of_its_own() {
     assert_eq!(ends("anywhere/calibration.json --fix base,tip"), ["kept: as asked", "kept: as asked"]);
     // The chain is the URDF's; a calibration has one only.
     ends("anywhere/calibration.json --base-link base_link --tip-link tool");
-    let out = folder.done("offsets robot.urdf anywhere/calibration.json");
+    let out = folder.run_to_success("offsets robot.urdf anywhere/calibration.json");
     assert!(
         out.contains("undetermined  * joint1, joint6: this comparison does not determine these\n"),
         "{out}"

@@ -90,7 +90,7 @@ fn without_numbers(text: &str) -> String {
 }
 
 /// A folder with a calibration in `out` of a URDF `robot.urdf`.
-fn calibrated(text: &str, chain: &str) -> Folder {
+fn folder_with_calibration(text: &str, chain: &str) -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", text);
     let run = folder.run(&format!("simulate robot.urdf{chain} --kind pose --count 40 --out session --quiet"));
@@ -103,7 +103,7 @@ fn calibrated(text: &str, chain: &str) -> Folder {
 #[test]
 fn every_way_back_keeps_the_text() {
     for (name, text, chain) in texts() {
-        let folder = calibrated(&text, chain);
+        let folder = folder_with_calibration(&text, chain);
         let first = std::fs::read_to_string(folder.path("out/calibrated.urdf")).unwrap();
         assert_eq!(without_numbers(&first), without_numbers(&text), "{name}");
         assert_ne!(first, text, "{name}");
@@ -126,7 +126,7 @@ fn every_way_back_keeps_the_text() {
 /// A URDF with the same kinematics is accepted, with a note; another robot is refused, and nothing written.
 #[test]
 fn another_robot_is_told() {
-    let folder = calibrated(PLAIN, "");
+    let folder = folder_with_calibration(PLAIN, "");
     folder.write("painted.urdf", PLAIN.replace("upper.dae", "painted.dae"));
     let run = folder.run("export out/calibration.json --onto painted.urdf --out done.urdf");
     assert_eq!(run.code, 0, "{}", run.err);
@@ -173,7 +173,7 @@ fn another_robot_is_told() {
 /// Differences that are added to the origins of the URDF result in the fitted robot.
 #[test]
 fn differences_of_origins() {
-    let folder = calibrated(PLAIN, "");
+    let folder = folder_with_calibration(PLAIN, "");
     let run = folder.run("export out/calibration.json --format pal");
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     println!("{}", run.out);

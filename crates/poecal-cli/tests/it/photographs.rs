@@ -19,15 +19,15 @@ fn simulated_pictures_calibrate_the_robot_wherever_the_camera_is() {
         let simulate = format!(
             "simulate robot.urdf --camera {place} --board {spec} --errors 0.2deg,0.5mm --count 20 --out s"
         );
-        folder.done(&simulate);
+        folder.run_to_success(&simulate);
         if place == "beside" {
             let first = folder.listing();
-            folder.done(&format!("{simulate} --force"));
+            folder.run_to_success(&format!("{simulate} --force"));
             assert!(folder.listing() == first, "another session of the same seed");
         }
-        folder.done(&format!("detect s --board {spec} --out corners.csv"));
+        folder.run_to_success(&format!("detect s --board {spec} --out corners.csv"));
         let words = "calibrate s/nominal.urdf s/joints.csv corners.csv --camera s/cameras.csv --out results --verbose";
-        let said = folder.done(&format!("{words} --markers {spec}"));
+        let said = folder.run_to_success(&format!("{words} --markers {spec}"));
         let line = said.lines().find(|line| line.starts_with("held out")).unwrap();
         println!("{place}, {spec}: {line}");
         // The stationary object, or the one on the tip, is the board: its pose is the truth of the session.

@@ -22,7 +22,7 @@ const BOARD: &str = "--markers chessboard:6x5:40mm";
 fn a_list_of_pictures_says_what_pictures_determine() {
     let folder = Folder::new();
     let files = "pictures.csv corners.csv";
-    let out = folder.done(&words("plan", files, &format!("{BOARD} --json")));
+    let out = folder.run_to_success(&words("plan", files, &format!("{BOARD} --json")));
     let found: serde_json::Value = serde_json::from_str(&out).unwrap();
     let rank = &found["identifiability"]["rank"];
     let mean_mm = found["expected_error"]["position_mean_mm"].as_f64().unwrap();

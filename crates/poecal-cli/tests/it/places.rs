@@ -4,20 +4,20 @@ use std::fs;
 use std::os::unix::fs::{FileTypeExt as _, symlink};
 use std::process::{Child, Command, Stdio};
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::Folder;
 use crate::session::session;
 
 /// A folder with a model, measurements, joints and the results of a calibration.
-fn calibrated() -> Folder {
-    let folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv --out out");
+fn folder_with_calibration() -> Folder {
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out out");
     folder
 }
 
 /// Refused: nothing has changed, and the sentence holds these words.
-fn refused(folder: &Folder, arguments: &str, words: &str) {
+fn assert_refused(folder: &Folder, arguments: &str, words: &str) {
     let before = folder.listing();
     let run = folder.run(arguments);
     assert_eq!(run.code, 2, "poecal {arguments}\n{}{}", run.out, run.err);
@@ -28,7 +28,7 @@ fn refused(folder: &Folder, arguments: &str, words: &str) {
 
 #[test]
 fn a_file_that_exists_is_replaced_only_with_force() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     folder.write("mine.txt", "mine");
     for command in [
         "export robot.urdf --format toml --out mine.txt",
@@ -37,26 +37,26 @@ fn a_file_that_exists_is_replaced_only_with_force() {
         "report out/calibration.json --out mine.txt",
         "calibrate robot.urdf measurements.csv --out new --report mine.txt",
     ] {
-        refused(
+        assert_refused(
             &folder,
             command,
             "mine.txt: found this file, expected none: choose another, or write over this one with --force",
         );
-        folder.done(&format!("{command} --force"));
+        folder.run_to_success(&format!("{command} --force"));
         assert_ne!(folder.read("mine.txt"), "mine", "{command}");
         folder.write("mine.txt", "mine");
     }
     // A report is renewed without, here and elsewhere; another page is not.
-    folder.done("report out/calibration.json");
-    folder.done("report out/calibration.json --out page.html");
-    folder.done("report out/calibration.json --out page.html");
+    folder.run_to_success("report out/calibration.json");
+    folder.run_to_success("report out/calibration.json --out page.html");
+    folder.run_to_success("report out/calibration.json --out page.html");
     folder.write("out/report.html", "<!DOCTYPE html><title>mine</title>");
-    refused(&folder, "report out/calibration.json", "out/report.html: found this file");
+    assert_refused(&folder, "report out/calibration.json", "out/report.html: found this file");
 }
 
 #[test]
 fn an_input_is_never_replaced() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     fs::hard_link(folder.path("measurements.csv"), folder.path("second_name.html")).unwrap();
     symlink("robot.urdf", folder.path("link.urdf")).unwrap();
     let words = "found a file that this run reads (";
@@ -72,20 +72,20 @@ fn an_input_is_never_replaced() {
         "calibrate out/calibrated.urdf measurements.csv --out out --force",
         "calibrate out/calibration.json measurements.csv --out out --force --report none",
     ] {
-        refused(&folder, command, words);
+        assert_refused(&folder, command, words);
     }
-    folder.done("simulate robot.urdf --out sim");
-    refused(&folder, "simulate sim/actual.urdf --out sim --force", words);
+    folder.run_to_success("simulate robot.urdf --out sim");
+    assert_refused(&folder, "simulate sim/actual.urdf --out sim --force", words);
 }
 
 #[test]
 fn what_is_no_regular_file_is_written_to_and_stays() {
-    let folder = calibrated();
-    folder.done("calibrate robot.urdf measurements.csv --out new --report /dev/null");
+    let folder = folder_with_calibration();
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out new --report /dev/null");
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
-    let text = folder.done("export robot.urdf --format toml");
-    assert_eq!(folder.done("export robot.urdf --format toml --out /dev/stdout"), text);
-    assert_eq!(folder.done("export robot.urdf --format toml --out -"), text);
+    let text = folder.run_to_success("export robot.urdf --format toml");
+    assert_eq!(folder.run_to_success("export robot.urdf --format toml --out /dev/stdout"), text);
+    assert_eq!(folder.run_to_success("export robot.urdf --format toml --out -"), text);
     // Standard output that goes into a file is not written from its beginning.
     let into = fs::File::create(folder.path("kept.txt")).unwrap();
     (&into).write_all_text("before\n");
@@ -98,17 +98,17 @@ fn what_is_no_regular_file_is_written_to_and_stays() {
         let pipe = pipe.clone();
         move || fs::read_to_string(pipe).unwrap()
     });
-    folder.done("export robot.urdf --format toml --out pipe");
+    folder.run_to_success("export robot.urdf --format toml --out pipe");
     assert_eq!(reader.join().unwrap(), text);
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
     fs::remove_file(&pipe).unwrap();
     // A device that is full: nothing is written elsewhere either.
-    refused(
+    assert_refused(
         &folder,
         "calibrate robot.urdf measurements.csv --out other --report /dev/full",
         "/dev/full: the file cannot be written",
     );
-    refused(
+    assert_refused(
         &folder,
         "calibrate robot.urdf measurements.csv --out /dev/null --force",
         "/dev/null: found a file, expected a folder",
@@ -128,11 +128,11 @@ impl WriteText for &fs::File {
 
 #[test]
 fn links_are_followed_or_refused() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     folder.write("real.toml", "old");
     symlink("real.toml", folder.path("link.toml")).unwrap();
-    refused(&folder, "export robot.urdf --out link.toml", "link.toml: found this file");
-    folder.done("export robot.urdf --out link.toml --force");
+    assert_refused(&folder, "export robot.urdf --out link.toml", "link.toml: found this file");
+    folder.run_to_success("export robot.urdf --out link.toml --force");
     assert!(fs::symlink_metadata(folder.path("link.toml")).unwrap().is_symlink());
     assert!(folder.read("real.toml").contains("poecal_robot"));
     fs::remove_file(folder.path("link.toml")).unwrap();
@@ -144,12 +144,12 @@ fn links_are_followed_or_refused() {
     fs::remove_file(folder.path("broken.toml")).unwrap();
     // A folder by a link; and a link among the results.
     symlink("out", folder.path("results")).unwrap();
-    folder.done("calibrate robot.urdf measurements.csv --out results --force");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out results --force");
     assert!(fs::symlink_metadata(folder.path("results")).unwrap().is_symlink());
     fs::remove_file(folder.path("results")).unwrap();
     fs::remove_file(folder.path("out/report.html")).unwrap();
     symlink("../robot.urdf", folder.path("out/report.html")).unwrap();
-    refused(
+    assert_refused(
         &folder,
         "calibrate robot.urdf measurements.csv --out out --force",
         "out/report.html: found a link",
@@ -159,27 +159,27 @@ fn links_are_followed_or_refused() {
 #[test]
 fn others_files_stay_and_the_mode_of_the_folder_too() {
     use std::os::unix::fs::PermissionsExt as _;
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     let mode = |folder: &Folder| fs::metadata(folder.path("out")).unwrap().permissions().mode();
     fs::set_permissions(folder.path("out"), fs::Permissions::from_mode(0o2750)).unwrap();
     let before = mode(&folder);
     let calibrate = "calibrate robot.urdf measurements.csv --out out --force --held-out 0.2";
-    folder.done(calibrate);
+    folder.run_to_success(calibrate);
     assert_eq!(mode(&folder), before);
     folder.write("out/notes.txt", "mine");
     fs::create_dir(folder.path("out/photos")).unwrap();
     folder.write("out/photos/1.jpg", "mine");
-    folder.done(calibrate);
+    folder.run_to_success(calibrate);
     assert_eq!(
         (folder.read("out/notes.txt"), folder.read("out/photos/1.jpg")),
         ("mine".into(), "mine".into())
     );
     // An empty folder, as a container's mount is, needs no --force; one with a file of others does.
     fs::create_dir(folder.path("empty")).unwrap();
-    folder.done("calibrate robot.urdf measurements.csv --out empty");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out empty");
     fs::create_dir(folder.path("theirs")).unwrap();
     folder.write("theirs/notes.txt", "mine");
-    refused(
+    assert_refused(
         &folder,
         "calibrate robot.urdf measurements.csv --out theirs",
         "theirs: the output folder exists",
@@ -188,7 +188,7 @@ fn others_files_stay_and_the_mode_of_the_folder_too() {
 
 #[test]
 fn what_an_interrupted_run_left_is_settled_and_said() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     let results = folder.read("out/calibration.json");
     // Killed while writing.
     fs::create_dir_all(folder.path("out/.poecal-unfinished-77-0/new")).unwrap();
@@ -235,7 +235,7 @@ fn what_an_interrupted_run_left_is_settled_and_said() {
 
 #[test]
 fn what_somebody_planted_leads_nowhere() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     fs::create_dir(folder.path("victim")).unwrap();
     folder.write("victim/calibration.json", "theirs");
     folder.write("victim/thesis.tex", "theirs");
@@ -253,8 +253,8 @@ fn what_somebody_planted_leads_nowhere() {
     fs::create_dir_all(folder.path("out/.poecal-unfinished-3-0/new")).unwrap();
     folder.write("out/.poecal-unfinished-3-0/journal", "poecal-journal-1\nremove thesis.tex\nend\n");
     folder.run("calibrate robot.urdf measurements.csv --out out");
-    folder.done("calibrate robot.urdf measurements.csv --out out --force");
-    folder.done("export robot.urdf --out new.toml");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out out --force");
+    folder.run_to_success("export robot.urdf --out new.toml");
     let names: Vec<_> =
         fs::read_dir(folder.path("victim")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(names.len(), 2, "{names:?}");
@@ -266,7 +266,7 @@ fn what_somebody_planted_leads_nowhere() {
 
 #[test]
 fn what_was_changed_since_an_interrupted_run_stays() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     let unfinished = "out/.poecal-unfinished-79-0";
     for half in ["new", "old"] {
         fs::create_dir_all(folder.path(unfinished).join(half)).unwrap();
@@ -291,26 +291,30 @@ fn what_was_changed_since_an_interrupted_run_stays() {
 
 #[test]
 fn a_report_named_inside_the_results_is_one_of_them() {
-    let folder = calibrated();
+    let folder = folder_with_calibration();
     let calibrate = "calibrate robot.urdf measurements.csv --out out --force --report";
-    folder.done(&format!("{calibrate} out/report.html"));
+    folder.run_to_success(&format!("{calibrate} out/report.html"));
     assert!(folder.read("out/report.html").contains("<!DOCTYPE html>"));
-    folder.done(&format!("{calibrate} ./out/../out/page.html"));
+    folder.run_to_success(&format!("{calibrate} ./out/../out/page.html"));
     assert!(folder.path("out/page.html").exists() && !folder.path("out/report.html").exists());
-    refused(&folder, &format!("{calibrate} out/calibration.json"), "found the place of another result");
-    refused(&folder, &format!("{calibrate} out"), "found the folder of the results");
-    refused(
+    assert_refused(
+        &folder,
+        &format!("{calibrate} out/calibration.json"),
+        "found the place of another result",
+    );
+    assert_refused(&folder, &format!("{calibrate} out"), "found the folder of the results");
+    assert_refused(
         &folder,
         "calibrate robot.urdf measurements.csv --out x --report x",
         "found the folder of the results",
     );
-    folder.done("calibrate robot.urdf measurements.csv --out y --report y/report.html");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out y --report y/report.html");
     assert!(folder.path("y/report.html").exists());
 }
 
 #[test]
 fn results_are_there_when_nobody_can_be_told() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     for more in ["", " --json"] {
         let run = folder
@@ -336,12 +340,12 @@ fn at_once(folder: &Folder, commands: [&str; 2]) -> (Vec<i32>, String) {
 
 #[test]
 fn of_two_writers_one_wins_and_results_are_never_mixed() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let (one, other) =
         ("calibrate robot.urdf measurements.csv --seed 1", "calibrate robot.urdf measurements.csv --seed 2");
     let mut whole = Vec::new();
     for (command, out) in [(one, "a"), (other, "b")] {
-        folder.done(&format!("{command} --out {out}"));
+        folder.run_to_success(&format!("{command} --out {out}"));
         whole.push(["calibration.json", "residuals.csv"].map(|name| folder.read(&format!("{out}/{name}"))));
     }
     let read =
@@ -385,7 +389,7 @@ fn is_ignored(number: u32) -> bool {
 
 #[test]
 fn a_signal_cleans_up() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     for (signal, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
         if is_ignored(number) {
             println!("SIG{signal} is ignored here, and not sent");
@@ -415,7 +419,7 @@ fn a_signal_cleans_up() {
 
 #[test]
 fn settings_lead_nowhere_else_and_let_only_results_go() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     fs::create_dir(folder.path("cell")).unwrap();
     fs::create_dir(folder.path("outside")).unwrap();
     symlink("../outside", folder.path("cell/link")).unwrap();
@@ -434,20 +438,20 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
         ("report = '../page.html'".to_owned(), "report"),
     ] {
         settings(&line);
-        refused(
+        assert_refused(
             &folder,
             "calibrate --settings cell/poecal.toml",
             &format!("cell/poecal.toml:4:{}: found the place `", key.len() + 4),
         );
     }
     settings("out = '../outside/x'");
-    folder.done("calibrate --settings cell/poecal.toml --out typed");
+    folder.run_to_success("calibrate --settings cell/poecal.toml --out typed");
     // Settings are an input, read by default or not.
     folder.write(
         "poecal.toml",
         "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\n",
     );
-    refused(
+    assert_refused(
         &folder,
         "calibrate --out by_default --report poecal.toml --force",
         "found a file that this run reads",
@@ -456,16 +460,16 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
     fs::create_dir(folder.path("cell/results")).unwrap();
     folder.write("cell/results/report.html", "mine");
     settings("out = 'results'\nforce = true");
-    refused(
+    assert_refused(
         &folder,
         "calibrate --settings cell/poecal.toml",
         "cell/results: found a folder without results of poecal",
     );
-    folder.done("calibrate --settings cell/poecal.toml --force");
-    folder.done("calibrate --settings cell/poecal.toml");
+    folder.run_to_success("calibrate --settings cell/poecal.toml --force");
+    folder.run_to_success("calibrate --settings cell/poecal.toml");
     // The recorded command does not contain it.
     assert!(!folder.read("cell/results/calibration.json").contains("--force"));
     folder.write("cell/page.html", "mine");
     settings("out = 'results'\nforce = true\nreport = 'page.html'");
-    refused(&folder, "calibrate --settings cell/poecal.toml", "cell/page.html: found this file");
+    assert_refused(&folder, "calibrate --settings cell/poecal.toml", "cell/page.html: found this file");
 }

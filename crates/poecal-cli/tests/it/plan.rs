@@ -15,7 +15,7 @@ fn folder() -> Folder {
 fn a_planned_list_is_read_and_completed() {
     let folder = folder();
     let out =
-        folder.done("plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm");
+        folder.run_to_success("plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm");
     for words in [
         "planned       12 configurations to fit, 4 at random to judge by, 0 returns to\n",
         "expected      ",
@@ -32,10 +32,10 @@ fn a_planned_list_is_read_and_completed() {
     assert_eq!(rows[0], "id,set,returns,turn[deg],slide[mm],nod[deg]");
     let of = |set: &str| rows.iter().filter(|row| row.split(',').nth(1) == Some(set)).count();
     assert_eq!((of("fit"), of("held_out"), rows.len()), (12, 4, 17));
-    folder.done("plan column.toml --rows joints.csv --kind point");
+    folder.run_to_success("plan column.toml --rows joints.csv --kind point");
     // Four more beside these, the same bytes for any number of threads.
     let more = |threads: usize| {
-        folder.done(&format!(
+        folder.run_to_success(&format!(
             "plan column.toml --count 20 --held-out-count 0 --keep-rows joints.csv --json --threads {threads}"
         ))
     };
@@ -53,9 +53,9 @@ fn a_planned_list_is_read_and_completed() {
 #[test]
 fn replaced_rows_leave_the_others_in_their_places() {
     let folder = folder();
-    folder.done("plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm");
+    folder.run_to_success("plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm");
     let before = folder.read("joints.csv");
-    let out = folder.done(
+    let out = folder.run_to_success(
         "plan column.toml --keep-rows joints.csv --replace-rows 3,15 --out better.csv --report plan.html",
     );
     assert!(out.contains("1 configurations to fit beside 11 kept ones, 8 at random"), "{out}");
@@ -105,7 +105,7 @@ fn what_cannot_be_planned_is_refused_with_a_reason() {
 #[test]
 fn a_row_that_is_off_is_named() {
     let folder = folder();
-    folder.done("simulate column.toml --kind point --count 30 --out made");
+    folder.run_to_success("simulate column.toml --kind point --count 30 --out made");
     let text = folder.read("made/measurements.csv");
     let clean = folder.run("watch column.toml made/measurements.csv --batch --json --robot-error 0.05mm");
     println!("{}", clean.out.lines().last().unwrap());
@@ -161,5 +161,5 @@ fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let (run, [second, _]) = planned("");
     let words = "every joint has the limits -401 to 401 deg, which are placeholders";
     assert!(run.err.contains(words) && second[0] >= -180.0 && second[1] <= 180.0, "{second:?} {}", run.err);
-    assert!(folder.done("check robot.urdf").split_whitespace().collect::<Vec<_>>().join(" ").contains(words));
+    assert!(folder.run_to_success("check robot.urdf").split_whitespace().collect::<Vec<_>>().join(" ").contains(words));
 }

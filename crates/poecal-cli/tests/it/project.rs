@@ -19,7 +19,7 @@ pub(crate) fn run(words: &str, out: &Path) -> Run {
 }
 
 /// Output of a run that must succeed.
-pub(crate) fn printed(words: &str, out: &Path) -> String {
+pub(crate) fn output_of(words: &str, out: &Path) -> String {
     let run = run(words, out);
     assert_eq!(run.code, 0, "{}", run.err);
     run.out

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::folder::Folder;
-use crate::project::{printed, root};
+use crate::project::{output_of, root};
 
 /// The text of the README's first block of a language.
 fn first_block<'a>(readme: &'a str, language: &str) -> &'a str {
@@ -30,7 +30,7 @@ fn the_first_command_prints_what_the_readme_shows() {
     let words = first_block(&readme, "sh").trim().strip_prefix("cargo run --release -- ").unwrap();
     let folder = Folder::new();
     let out = folder.path("poecal-out");
-    let shown = printed(words, &out).replace(&out.display().to_string(), "poecal-out");
+    let shown = output_of(words, &out).replace(&out.display().to_string(), "poecal-out");
     // The line with the folder, whose name is longer here, is broken at another word.
     let lines = |text: &str| without_rounding_errors(text).replace("\n              ", " ");
     assert_eq!(lines(&shown), lines(first_block(&readme, "text").trim_end()));

@@ -19,7 +19,7 @@ pub(crate) type Row = ([f64; 6], [f64; 3], [f64; 4]);
 
 /// A simulated session of an elbow with errors.
 pub(crate) fn session(folder: &Folder, count: usize) -> Vec<Row> {
-    folder.done(&format!("simulate {MODEL} --kind pose --count {count} --seed 5 --out made"));
+    folder.run_to_success(&format!("simulate {MODEL} --kind pose --count {count} --seed 5 --out made"));
     let text = folder.read("made/measurements.csv");
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -44,19 +44,19 @@ pub(crate) fn session(folder: &Folder, count: usize) -> Vec<Row> {
 }
 
 /// Texts of numbers, separated.
-pub(crate) fn joined(values: &[f64], digits: usize, separator: &str) -> String {
+pub(crate) fn join_numbers(values: &[f64], digits: usize, separator: &str) -> String {
     values.iter().map(|it| format!("{it:.digits$}")).collect::<Vec<_>>().join(separator)
 }
 
 /// poecal's own form, with points or poses.
-fn own(rows: &[Row], is_posed: bool) -> String {
+fn own_form(rows: &[Row], is_posed: bool) -> String {
     let mut text =
         "id,joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg],x[mm],y[mm],z[mm]"
             .to_owned();
     text += if is_posed { ",qx,qy,qz,qw\n" } else { "\n" };
     for (k, (joints, place, turn)) in rows.iter().enumerate() {
-        write!(text, "P{},{},{}", k + 1, joined(joints, 9, ","), joined(place, 6, ",")).unwrap();
-        text += &if is_posed { format!(",{}\n", joined(turn, 10, ",")) } else { "\n".to_owned() };
+        write!(text, "P{},{},{}", k + 1, join_numbers(joints, 9, ","), join_numbers(place, 6, ",")).unwrap();
+        text += &if is_posed { format!(",{}\n", join_numbers(turn, 10, ",")) } else { "\n".to_owned() };
     }
     text
 }
@@ -81,7 +81,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
     let rapid = each(&|k, row| {
         format!(
             "  CONST jointtarget P{k}:=[[{}],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];\n",
-            joined(&row.0, 9, ",")
+            join_numbers(&row.0, 9, ",")
         )
     });
     let krl = each(&|k, row| {
@@ -97,12 +97,12 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
     let moves = each(&|k, _| format!("   {k}:J P[{k}] 20% FINE ;\n"));
     let script = each(&|_, row| {
         let radians: Vec<f64> = row.0.iter().map(|it| it.to_radians()).collect();
-        format!("  movej([{}], a=1.0, v=0.5)\n  sleep(2.0)\n", joined(&radians, 12, ","))
+        format!("  movej([{}], a=1.0, v=0.5)\n  sleep(2.0)\n", join_numbers(&radians, 12, ","))
     });
     let log = each(&|k, row| {
         let radians: Vec<f64> = row.0.iter().map(|it| it.to_radians()).collect();
         let wanted: Vec<f64> = radians.iter().map(|it| it + 0.01).collect();
-        format!("{}.5 {} {}\n", 5 * k, joined(&wanted, 12, " "), joined(&radians, 12, " "))
+        format!("{}.5 {} {}\n", 5 * k, join_numbers(&wanted, 12, " "), join_numbers(&radians, 12, " "))
     });
     let names = |stem: &str| (0..6).map(|k| format!("{stem}_{k}")).collect::<Vec<_>>().join(" ");
     let joints = vec![
@@ -112,7 +112,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
             each(&|k, row| {
                 format!(
                     "LOCAL VAR jointtarget j{k} = j:{{{} ,0}}{{EJ 0,0,0,0,0,0}}\n",
-                    joined(&row.0, 9, ",")
+                    join_numbers(&row.0, 9, ",")
                 )
             }),
         ),
@@ -120,12 +120,12 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
         ("fanuc.ls", format!("/PROG CALIB\n/ATTR\n/MN\n{moves}/POS\n{positions}/END\n")),
         ("moves.script", format!("def calib():\n{script}end\n")),
         ("log.csv", format!("timestamp {} {}\n{log}", names("target_q"), names("actual_q"))),
-        ("bare.txt", each(&|_, row| joined(&row.0, 9, " ") + "\n")),
+        ("bare.txt", each(&|_, row| join_numbers(&row.0, 9, " ") + "\n")),
         (
             "turned.csv",
             format!(
                 "A1;A2;A3;A4;A5;A6\n{}",
-                each(&|_, row| joined(&row.0, 9, ";").replace('.', ",") + ";\n")
+                each(&|_, row| join_numbers(&row.0, 9, ";").replace('.', ",") + ";\n")
             ),
         ),
     ];
@@ -142,7 +142,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
                 "{comments}CARTESIAN: X,  Y,  Z (mm)\n{}",
                 each(&|k, row| format!(
                     "Robot,  P{k},  0,  {},  02/12/25 16:5{}:00\n",
-                    joined(&row.1, 6, ",  "),
+                    join_numbers(&row.1, 6, ",  "),
                     k % 10
                 ))
             ),
@@ -164,7 +164,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
                 "{comments}CARTESIAN: X,  Y,  Z (mm)\n{}",
                 each(&|k, row| format!(
                     "Robot,  P{k},  {},  0.0,  6.35,  0.05,  0.05,  0.05\n",
-                    joined(&row.1, 6, ",  ")
+                    join_numbers(&row.1, 6, ",  ")
                 ))
             ),
         ),
@@ -174,7 +174,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
                 "X  [mm],Y  [mm],Z  [mm],U(95)  [mm],Image RMS  [\u{b5}m],Temperature  [\u{b0}C],Time Stamp,Delete\n{}",
                 each(&|_, row| format!(
                     "{},0.18,0.24,22.6,'11.10.2022 10:00:00.000,\n",
-                    joined(&row.1, 6, ",")
+                    join_numbers(&row.1, 6, ",")
                 ))
             ),
         ),
@@ -186,7 +186,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
 fn every_pair_of_forms_gives_the_calibration_of_our_own() {
     let folder = Folder::new();
     let rows = session(&folder, 40);
-    fs::write(folder.path("own.csv"), own(&rows, false)).unwrap();
+    fs::write(folder.path("own.csv"), own_form(&rows, false)).unwrap();
     let (expected, _) = held_out(&folder, "own.csv");
     let (joints, measured) = forms(&rows);
     for (name, text) in joints.iter().chain(&measured) {
@@ -213,7 +213,7 @@ fn every_pair_of_forms_gives_the_calibration_of_our_own() {
 fn files_of_several_places_of_the_tracker_have_a_frame_each() {
     let folder = Folder::new();
     let rows = session(&folder, 60);
-    fs::write(folder.path("own.csv"), own(&rows, false)).unwrap();
+    fs::write(folder.path("own.csv"), own_form(&rows, false)).unwrap();
     let (expected, _) = held_out(&folder, "own.csv");
     let (joints, _) = forms(&rows);
     fs::write(folder.path("rapid.mod"), &joints[0].1).unwrap();
@@ -225,7 +225,7 @@ fn files_of_several_places_of_the_tracker_have_a_frame_each() {
             let [x, y, z] = rows[at].1;
             // The tracker was turned by a right angle, and carried some metres.
             let seen = if place == 1 { [x, y, z] } else { [2000.0 - y, x - 700.0, z + 300.0] };
-            writeln!(text, "Robot,  P{},  {}", at + 1, joined(&seen, 6, ",  ")).unwrap();
+            writeln!(text, "Robot,  P{},  {}", at + 1, join_numbers(&seen, 6, ",  ")).unwrap();
         }
         fs::write(folder.path(&format!("place{place}.txt")), text).unwrap();
     }
@@ -241,7 +241,7 @@ fn files_of_several_places_of_the_tracker_have_a_frame_each() {
 fn files_of_other_tools_are_whole_sessions() {
     let folder = Folder::new();
     let rows = session(&folder, 40);
-    fs::write(folder.path("own.csv"), own(&rows, true)).unwrap();
+    fs::write(folder.path("own.csv"), own_form(&rows, true)).unwrap();
     let (expected, _) = held_out(&folder, "own.csv");
     // R = Rx Ry Rz (RoboDK), and R = Rz Ry Rx (Auto ID).
     let angles = |q: &[f64; 4], is_moving: bool| {
@@ -264,13 +264,14 @@ fn files_of_other_tools_are_whole_sessions() {
         writeln!(
             robodk,
             "{},{},{},0,0",
-            joined(joints, 9, ","),
-            joined(place, 6, ","),
-            joined(&moving, 12, ",")
+            join_numbers(joints, 9, ","),
+            join_numbers(place, 6, ","),
+            join_numbers(&moving, 12, ",")
         )
         .unwrap();
         let fixed = angles(turn, false).map(f64::to_degrees);
-        let cells = [joined(place, 6, "\t"), joined(&fixed, 10, "\t"), joined(joints, 9, "\t")];
+        let cells =
+            [join_numbers(place, 6, "\t"), join_numbers(&fixed, 10, "\t"), join_numbers(joints, 9, "\t")];
         writeln!(auto_id, "P{}\t{}", k + 1, cells.join("\t")).unwrap();
     }
     fs::write(folder.path("robodk.csv"), robodk).unwrap();
@@ -287,7 +288,7 @@ fn files_of_other_tools_are_whole_sessions() {
 fn the_one_sheet_with_a_table_is_read_and_its_cells_are_named() {
     let folder = Folder::new();
     let rows = session(&folder, 40);
-    fs::write(folder.path("own.csv"), own(&rows, false)).unwrap();
+    fs::write(folder.path("own.csv"), own_form(&rows, false)).unwrap();
     let (expected, _) = held_out(&folder, "own.csv");
     let mut sheet: Vec<Vec<String>> = vec![vec!["Messprotokoll".to_owned()], Vec::new()];
     sheet.push(["Nr.", "A1", "A2", "A3", "A4", "A5", "A6", "X", "Y", "Z"].map(str::to_owned).to_vec());
@@ -386,15 +387,15 @@ fn what_has_one_part_alone_or_none_is_named() {
 }
 
 /// Interpolation of two rows of numbers.
-pub(crate) fn between(one: &[f64], other: &[f64], share: f64) -> Vec<f64> {
+pub(crate) fn interpolate_rows(one: &[f64], other: &[f64], share: f64) -> Vec<f64> {
     one.iter().zip(other).map(|(a, b)| a + share * (b - a)).collect()
 }
 
 /// Interpolation of two orientations, as unit quaternions.
-pub(crate) fn turned(one: [f64; 4], other: [f64; 4], share: f64) -> [f64; 4] {
+pub(crate) fn interpolate_turn(one: [f64; 4], other: [f64; 4], share: f64) -> [f64; 4] {
     let dot = one.iter().zip(&other).map(|(a, b)| a * b).sum::<f64>();
     let other = if dot < 0.0 { other.map(|it| -it) } else { other };
-    let turn = between(&one, &other, share);
+    let turn = interpolate_rows(&one, &other, share);
     let length = turn.iter().map(|it| it * it).sum::<f64>().sqrt();
     std::array::from_fn(|k| turn[k] / length)
 }
@@ -420,7 +421,7 @@ pub(crate) fn stream(rows: usize, rate: usize) -> Vec<(f64, usize, f64)> {
 fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
     let folder = Folder::new();
     let rows = session(&folder, 26);
-    fs::write(folder.path("own.csv"), own(&rows, true)).unwrap();
+    fs::write(folder.path("own.csv"), own_form(&rows, true)).unwrap();
     let (expected, _) = held_out(&folder, "own.csv");
     let Recordings { log, take, qualisys } = recordings(&rows);
     fs::write(folder.path("robot_data.csv"), log).unwrap();

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use crate::folder::Folder;
-use crate::recorded::{MODEL, Row, between, joined, session, stream, turned};
+use crate::recorded::{MODEL, Row, interpolate_rows, interpolate_turn, join_numbers, session, stream};
 
 /// A robot that stops at each row, by its controller and by two systems of motion capture.
 pub(crate) struct Recordings {
@@ -20,9 +20,9 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
     let next = |row: usize| (row + 1).min(rows.len() - 1);
     let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
     for (time, row, share) in stream(rows.len(), 125) {
-        let joints = between(&rows[row].0, &rows[next(row)].0, share);
+        let joints = interpolate_rows(&rows[row].0, &rows[next(row)].0, share);
         let radians: Vec<f64> = joints.iter().map(|it| it.to_radians()).collect();
-        writeln!(log, "{:.6},{}", 12_621.061 + time, joined(&radians, 9, ",")).unwrap();
+        writeln!(log, "{:.6},{}", 12_621.061 + time, join_numbers(&radians, 9, ",")).unwrap();
     }
     let mut take = "Format Version,1.24,Take Name,A,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n".to_owned();
     let head = |label: &str, of: &dyn Fn(usize) -> String| {
@@ -44,14 +44,14 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
     qualisys += &(0..9).map(|k| format!("Rot[{k}]")).collect::<Vec<_>>().join("\t");
     qualisys += "\t\n";
     for (frame, (time, row, share)) in stream(rows.len(), 100).into_iter().enumerate() {
-        let place = between(&rows[row].1, &rows[next(row)].1, share);
-        let [x, y, z, w] = turned(rows[row].2, rows[next(row)].2, share);
+        let place = interpolate_rows(&rows[row].1, &rows[next(row)].1, share);
+        let [x, y, z, w] = interpolate_turn(rows[row].2, rows[next(row)].2, share);
         let is_lost = frame % 50 == 7;
         let (time, drifted) = (time, time * (1.0 + 35e-6));
         let body = if is_lost {
             ",,,,,,".to_owned()
         } else {
-            format!("{},{}", joined(&[x, y, z, w], 6, ","), joined(&place, 6, ","))
+            format!("{},{}", join_numbers(&[x, y, z, w], 6, ","), join_numbers(&place, 6, ","))
         };
         writeln!(take, "{frame},{drifted:.6},0,0.2588,0,0.9659,500,100,-700,{body},1,2,3").unwrap();
         let m = [
@@ -70,13 +70,13 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
         let zeros = [0.0; 16];
         let cells = [&place[..], &angles, &[0.3], &m].concat();
         let cells = if is_lost { &zeros[..] } else { &cells };
-        writeln!(qualisys, "{}\t{time:.5}\t{}\t", frame + 1, joined(cells, 7, "\t")).unwrap();
+        writeln!(qualisys, "{}\t{time:.5}\t{}\t", frame + 1, join_numbers(cells, 7, "\t")).unwrap();
     }
     Recordings { log, take, qualisys }
 }
 
 /// A folder with the log and the take of a session.
-fn recorded() -> (Folder, Recordings) {
+fn folder_with_recordings() -> (Folder, Recordings) {
     let folder = Folder::new();
     let rows = session(&folder, 24);
     let all = recordings(&rows);
@@ -86,7 +86,7 @@ fn recorded() -> (Folder, Recordings) {
 }
 
 /// A text with the cells of each line of data changed.
-fn changed(text: &str, head: usize, of: impl Fn(usize, &mut Vec<String>)) -> String {
+fn change_cells(text: &str, head: usize, of: impl Fn(usize, &mut Vec<String>)) -> String {
     let line = |(at, line): (usize, &str)| {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
         if at >= head {
@@ -98,7 +98,7 @@ fn changed(text: &str, head: usize, of: impl Fn(usize, &mut Vec<String>)) -> Str
 }
 
 /// Refuses these files, each with its words, and writes nothing.
-fn refused(folder: &Folder, cases: &[(&str, &str)]) {
+fn assert_refused(folder: &Folder, cases: &[(&str, &str)]) {
     let before = folder.listing();
     for (files, expected) in cases {
         let run = folder.run(&format!("import {MODEL} {files} --out out.csv --quiet"));
@@ -111,10 +111,10 @@ fn refused(folder: &Folder, cases: &[(&str, &str)]) {
 
 #[test]
 fn recordings_that_do_not_belong_together_are_refused_without_a_lag() {
-    let (folder, Recordings { log, take, .. }) = recorded();
-    let exchanged = changed(&log, 1, |_, cells| cells.swap(2, 3));
+    let (folder, Recordings { log, take, .. }) = folder_with_recordings();
+    let exchanged = change_cells(&log, 1, |_, cells| cells.swap(2, 3));
     fs::write(folder.path("exchanged.csv"), exchanged).unwrap();
-    let mirrored = changed(&take, 7, |_, cells| cells.swap(13, 14));
+    let mirrored = change_cells(&take, 7, |_, cells| cells.swap(13, 14));
     fs::write(folder.path("mirrored.csv"), mirrored).unwrap();
     // Another session.
     let other = Folder::new();
@@ -126,7 +126,7 @@ fn recordings_that_do_not_belong_together_are_refused_without_a_lag() {
         ("log.csv other.csv", "at no lag of the clocks"),
         ("log.csv other.csv --lag -12621s+-0.5s", "the nominal robot misses"),
     ];
-    refused(&folder, &cases);
+    assert_refused(&folder, &cases);
     for files in ["exchanged.csv take.csv", "log.csv other.csv"] {
         let run = folder.run(&format!("calibrate {MODEL} {files} --join motion --out out --quiet"));
         assert_eq!((run.code, run.err.lines().count()), (2, 1), "{files}: {}", run.err);
@@ -140,9 +140,9 @@ fn recordings_that_do_not_belong_together_are_refused_without_a_lag() {
 
 #[test]
 fn a_log_without_usable_times_is_refused_at_once_and_says_why() {
-    let (folder, Recordings { log, take, .. }) = recorded();
+    let (folder, Recordings { log, take, .. }) = folder_with_recordings();
     // In milliseconds, without times, and a recording that was concatenated in the wrong order.
-    let milliseconds = changed(&log, 1, |_, cells| {
+    let milliseconds = change_cells(&log, 1, |_, cells| {
         let time: f64 = cells[0].parse().unwrap();
         cells[0] = format!("{:.0}", 1e3 * time);
     });
@@ -159,7 +159,7 @@ fn a_log_without_usable_times_is_refused_at_once_and_says_why() {
         ("log.csv reversed.csv", "reversed.csv:9: found a time that goes back, from "),
     ];
     let begun = std::time::Instant::now();
-    refused(&folder, &cases);
+    assert_refused(&folder, &cases);
     assert!(begun.elapsed().as_secs() < 10, "{:?}", begun.elapsed());
     // The column that the sentence advises.
     let run = folder.run(&format!("import {MODEL} ms_stated.csv take.csv --out out.csv"));
@@ -168,7 +168,7 @@ fn a_log_without_usable_times_is_refused_at_once_and_says_why() {
 
 #[test]
 fn a_frame_that_strayed_is_named_and_changes_no_stand() {
-    let (folder, Recordings { take, .. }) = recorded();
+    let (folder, Recordings { take, .. }) = folder_with_recordings();
     let table = |name: &str, files: &str| {
         let run = folder.run(&format!("import {MODEL} {files} --out {name}"));
         assert_eq!(run.code, 0, "{files}: {}", run.err);
@@ -176,7 +176,7 @@ fn a_frame_that_strayed_is_named_and_changes_no_stand() {
     };
     let (expected, said) = table("whole.csv", "log.csv take.csv");
     assert!(!said.contains("of the same stand"), "{said}");
-    let strayed = changed(&take, 7, |at, cells| {
+    let strayed = change_cells(&take, 7, |at, cells| {
         if at == 40 {
             cells.swap(13, 14);
         }
@@ -194,7 +194,7 @@ fn a_frame_that_strayed_is_named_and_changes_no_stand() {
 
 #[test]
 fn words_and_cut_rows_are_no_lost_frames() {
-    let (folder, Recordings { take, qualisys, .. }) = recorded();
+    let (folder, Recordings { take, qualisys, .. }) = folder_with_recordings();
     let write = |name: &str, text: String| fs::write(folder.path(name), text).unwrap();
     let word = |word: &'static str| {
         move |at: usize, cells: &mut Vec<String>| {
@@ -203,15 +203,15 @@ fn words_and_cut_rows_are_no_lost_frames() {
             }
         }
     };
-    write("word.csv", changed(&take, 7, word("abc")));
-    write("nan.csv", changed(&take, 7, word("NaN")));
+    write("word.csv", change_cells(&take, 7, word("abc")));
+    write("nan.csv", change_cells(&take, 7, word("NaN")));
     let short = |at: usize, cells: &mut Vec<String>| {
         if at == 60 {
             cells.remove(10);
         }
     };
-    write("short.csv", changed(&take, 7, short));
-    write("trailing.csv", changed(&take, 7, |_, cells| cells.truncate(16)));
+    write("short.csv", change_cells(&take, 7, short));
+    write("trailing.csv", change_cells(&take, 7, |_, cells| cells.truncate(16)));
     write("empty.csv", take.lines().take(7).map(|it| it.to_owned() + "\n").collect());
     write("semicolons.csv", take.replace(',', ";"));
     write("metres.csv", take.replacen("Millimeters", "Meters", 1));
@@ -232,23 +232,29 @@ fn words_and_cut_rows_are_no_lost_frames() {
         ("log.csv metres.csv", "expected another unit, most likely mm"),
         ("log.csv six.tsv", "six.tsv:61: found `abc` in a column of `Tool`, expected a number"),
     ];
-    refused(&folder, &cases);
+    assert_refused(&folder, &cases);
     let run = folder.run(&format!("import {MODEL} log.csv trailing.csv --out out.csv"));
     assert_eq!(run.code, 0, "{}", run.err);
 }
 
 #[test]
 fn a_table_of_rows_at_rest_is_refused_before_files_are_joined_in_motion() {
-    let (folder, _) = recorded();
-    refused(&folder, &[("log.csv take.csv --join motion", "found --join motion, expected rows at rest")]);
+    let (folder, _) = folder_with_recordings();
+    assert_refused(
+        &folder,
+        &[("log.csv take.csv --join motion", "found --join motion, expected rows at rest")],
+    );
     let text = "time[ms],joint1\n";
     fs::write(folder.path("broken.csv"), text).unwrap();
-    refused(&folder, &[("broken.csv take.csv --join motion", "found --join motion, expected rows at rest")]);
+    assert_refused(
+        &folder,
+        &[("broken.csv take.csv --join motion", "found --join motion, expected rows at rest")],
+    );
 }
 
 #[test]
 fn a_recording_in_motion_is_of_one_instrument() {
-    let (folder, Recordings { take, .. }) = recorded();
+    let (folder, Recordings { take, .. }) = folder_with_recordings();
     let mut text = "time,x[mm],y[mm],z[mm],instrument\n".to_owned();
     for (at, line) in take.lines().skip(7).enumerate() {
         let cells: Vec<&str> = line.split(',').collect();

@@ -1,10 +1,10 @@
 //! Remedies in messages of `hand-eye`, `tcp` and of joined files: each is taken from its sentence and followed.
 
 use poecal_arm::lie::Pose;
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::{Folder, Run};
-use crate::hand_eye::{SEEN, abc, camera, place, rvec, seen, session, table};
+use crate::hand_eye::{SEEN, abc, camera, camera_numbers, place, rvec, session, table};
 
 /// A message on one line.
 fn words(run: &Run) -> String {
@@ -12,7 +12,7 @@ fn words(run: &Run) -> String {
 }
 
 /// Part of a message between two pieces of it.
-fn between<'t>(text: &'t str, before: &str, behind: &str) -> &'t str {
+fn text_between<'t>(text: &'t str, before: &str, behind: &str) -> &'t str {
     let (_, rest) = text.split_once(before).unwrap_or_else(|| panic!("no `{before}` in {text}"));
     rest.split_once(behind).unwrap_or_else(|| panic!("no `{behind}` behind `{before}` in {text}")).0
 }
@@ -20,7 +20,7 @@ fn between<'t>(text: &'t str, before: &str, behind: &str) -> &'t str {
 const TRUE_CAMERA: [f64; 3] = [0.04, -0.06, 0.09];
 
 fn is_found(folder: &Folder, words: &str) {
-    let (found, _) = camera(&folder.done(words));
+    let (found, _) = camera(&folder.run_to_success(words));
     let off = found.iter().zip(TRUE_CAMERA).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
     // Poses without noise except for a thousandth of a degree, 0.4 m away.
     assert!(off < 1e-4, "{words}: {found:?}");
@@ -46,21 +46,24 @@ fn every_form_of_angles_that_is_named_has_names_of_columns() {
     for form in 0..5 {
         let header = if form == 4 { "A[deg],B[deg],C[deg]" } else { "rx[deg],ry[deg],rz[deg]" };
         let write = |header: &str| {
-            let all =
-                rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(form, arm), seen(board)].concat());
+            let all = rows
+                .iter()
+                .map(|(arm, board)| [place(arm, 1e3), angles(form, arm), camera_numbers(board)].concat());
             table(&folder, "poses.csv", &format!("x[mm],y[mm],z[mm],{header},{SEEN}"), all);
         };
         write(header);
         let run = folder.run("hand-eye poses.csv --camera in-hand --json");
         println!("{}", run.err.trim_end());
         assert_eq!(run.code, 2, "{form}: {}{}", run.out, run.err);
-        let names = between(&run.err, "name the columns ", ", with `[deg]` behind each name").to_owned();
+        let names = text_between(&run.err, "name the columns ", ", with `[deg]` behind each name").to_owned();
         write(&names.split(", ").map(|name| format!("{name}[deg]")).collect::<Vec<_>>().join(","));
         is_found(&folder, "hand-eye poses.csv --camera in-hand --json");
     }
     // Names of makers that need no message.
     for (form, header) in [(0, "U,V,W"), (3, "A,E,R"), (2, "intrinsic_x,intrinsic_y,intrinsic_z")] {
-        let all = rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(form, arm), seen(board)].concat());
+        let all = rows
+            .iter()
+            .map(|(arm, board)| [place(arm, 1e3), angles(form, arm), camera_numbers(board)].concat());
         table(&folder, "poses.csv", &format!("X,Y,Z,{header},{SEEN}"), all);
         is_found(&folder, "hand-eye poses.csv --camera in-hand --json");
     }
@@ -70,7 +73,8 @@ fn every_form_of_angles_that_is_named_has_names_of_columns() {
 fn units_of_rotation_vectors_are_stated_as_the_message_says() {
     let folder = Folder::new();
     let rows = session(20);
-    let all = rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(4, arm), seen(board)].concat());
+    let all =
+        rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(4, arm), camera_numbers(board)].concat());
     table(&folder, "poses.csv", &format!("X,Y,Z,RX,RY,RZ,{SEEN}"), all);
     let run = folder.run("hand-eye poses.csv --camera in-hand --units mm --json");
     assert!(
@@ -120,17 +124,17 @@ fn the_scale_of_a_board_is_that_of_the_sentence_from_a_tenth_to_ten_times() {
         write(times);
         let run = folder.run("hand-eye poses.csv --camera in-hand");
         let said = words(&run);
-        println!("{}", between(&said, "verdict", "camera "));
+        println!("{}", text_between(&said, "verdict", "camera "));
         assert!(run.code == 1 && said.contains(&format!("the camera's lengths {part}")), "{times}: {said}");
-        let by: f64 = between(&said, "(divided by ", " it fits)").parse().unwrap();
+        let by: f64 = text_between(&said, "(divided by ", " it fits)").parse().unwrap();
         write(times / by);
-        folder.done("hand-eye poses.csv --camera in-hand");
+        folder.run_to_success("hand-eye poses.csv --camera in-hand");
     }
 }
 
 #[test]
 fn a_mapping_of_what_was_measured_leaves_lists_of_joints_as_they_are() {
-    let folder = crate::session::session(Kind::POINT);
+    let folder = crate::session::session(SessionKind::POINT);
     let text = folder.read("measurements.csv");
     let rows: Vec<Vec<f64>> = text
         .lines()
@@ -169,11 +173,11 @@ fn a_mapping_of_what_was_measured_leaves_lists_of_joints_as_they_are() {
         let run = folder.run(&format!("calibrate robot.urdf {joints} tracker.txt --out results"));
         let said = words(&run);
         assert!(run.code == 2 && said.contains("number them in a mapping (--columns)"), "{joints}: {said}");
-        let like = between(&said, "like `position = { columns = ", " }`");
+        let like = text_between(&said, "like `position = { columns = ", " }`");
         assert_eq!(like, "[1, 2, 3]");
         for (name, unit) in [("tracker.txt", "mm"), ("metres.txt", "m")] {
             folder.write("map.toml", format!("position = {{ columns = [8, 9, 10], unit = \"{unit}\" }}\n"));
-            let out = folder.done(&format!(
+            let out = folder.run_to_success(&format!(
                 "calibrate robot.urdf {joints} {name} --columns map.toml --out results --force"
             ));
             assert!(out.starts_with("verdict       good"), "{joints} {name}: {out}");
@@ -213,6 +217,6 @@ fn no_tool_is_printed_that_is_not_to_be_used() {
     }
     let flange: Vec<Pose> = at_pin.iter().map(|it| *it * tip.inverse()).collect();
     write(&flange);
-    let said = folder.done("tcp touches.csv");
+    let said = folder.run_to_success("tcp touches.csv");
     assert!(said.starts_with("verdict       good") && said.contains("set_tcp"), "{said}");
 }

@@ -1,13 +1,13 @@
 //! `poecal calibrate` of sessions in which something moved: reported, repaired, and judged by the rows after it.
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use serde_json::Value;
 
 use crate::folder::Folder;
 use crate::session::{session, write_measurements};
 
 /// A file with the `y` of its data lines from one on moved, millimetres.
-fn moved(folder: &Folder, from: &str, to: &str, first: usize, by_mm: f64) {
+fn move_lines(folder: &Folder, from: &str, to: &str, first: usize, by_mm: f64) {
     let text = folder.read(from);
     let mut lines = text.lines();
     let head = lines.next().unwrap();
@@ -25,9 +25,9 @@ fn moved(folder: &Folder, from: &str, to: &str, first: usize, by_mm: f64) {
 
 #[test]
 fn a_move_during_the_session_is_repaired_and_said() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let more = Simulation { count: 160, ..Simulation::default() };
-    write_measurements(&folder, "all.csv", Kind::POINT, "", &more);
+    write_measurements(&folder, "all.csv", SessionKind::POINT, "", &more);
     let all = folder.read("all.csv");
     let part = |first: usize, count: usize| {
         let is_of = |(line, _): &(usize, &str)| *line == 0 || (first..first + count).contains(line);
@@ -35,10 +35,10 @@ fn a_move_during_the_session_is_repaired_and_said() {
     };
     folder.write("fit.csv", part(1, 80));
     folder.write("judge.csv", part(81, 60));
-    moved(&folder, "fit.csv", "knocked.csv", 40, 2.0);
-    moved(&folder, "judge.csv", "after.csv", 0, 2.0);
+    move_lines(&folder, "fit.csv", "knocked.csv", 40, 2.0);
+    move_lines(&folder, "judge.csv", "after.csv", 0, 2.0);
 
-    let out = folder.done("calibrate robot.urdf knocked.csv --out knocked --verbose");
+    let out = folder.run_to_success("calibrate robot.urdf knocked.csv --out knocked --verbose");
     println!("{out}");
     let said = out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("repaired from knocked.csv:42 on the measuring device is 2."), "{said}");
@@ -53,7 +53,7 @@ fn a_move_during_the_session_is_repaired_and_said() {
 
     // Other rows are judged by the state that fits.
     let judged = |name: &str| -> Value {
-        let text = folder.done(&format!("validate knocked/calibration.json {name} --json --history none"));
+        let text = folder.run_to_success(&format!("validate knocked/calibration.json {name} --json --history none"));
         serde_json::from_str(&text).unwrap()
     };
     for (name, stage) in [("judge.csv", 1), ("after.csv", 2)] {
@@ -64,10 +64,10 @@ fn a_move_during_the_session_is_repaired_and_said() {
     }
     // A prediction for the device equals its present measurement.
     let seen = |name: &str| -> Vec<f64> {
-        let text = folder.done(&format!("predict {name} judge.csv --output-frame device --quiet"));
+        let text = folder.run_to_success(&format!("predict {name} judge.csv --output-frame device --quiet"));
         text.lines().nth(1).unwrap().split(',').skip(1).take(3).map(|cell| cell.parse().unwrap()).collect()
     };
-    folder.done("calibrate robot.urdf fit.csv --out clean");
+    folder.run_to_success("calibrate robot.urdf fit.csv --out clean");
     let (now, before) = (seen("knocked/calibration.json"), seen("clean/calibration.json"));
     assert!((now[1] - before[1] - 2e-3).abs() < 3e-4, "{now:?} {before:?}");
 

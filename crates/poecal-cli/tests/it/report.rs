@@ -1,23 +1,23 @@
 //! The report: its output place, and its reconstruction from its files.
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 
 use crate::folder::Folder;
 use crate::session::{calibration, session, write_measurements};
 
 #[test]
 fn calibrate_writes_the_report_where_it_is_asked_to() {
-    let folder = session(Kind::POINT);
-    let out = folder.done("calibrate robot.urdf measurements.csv");
+    let folder = session(SessionKind::POINT);
+    let out = folder.run_to_success("calibrate robot.urdf measurements.csv");
     assert!(out.ends_with("poecal-out: open report.html; 3 files beside it\n"), "{out}");
     let page = folder.read("poecal-out/report.html");
-    let out = folder.done("calibrate robot.urdf measurements.csv --out other --report page.html");
+    let out = folder.run_to_success("calibrate robot.urdf measurements.csv --out other --report page.html");
     assert!(
         out.ends_with("report        page.html\n") && !folder.path("other/report.html").exists(),
         "{out}"
     );
     assert!(folder.read("page.html") == page, "another place is another page");
-    let out = folder.done("calibrate robot.urdf measurements.csv --force --report none");
+    let out = folder.run_to_success("calibrate robot.urdf measurements.csv --force --report none");
     assert!(!out.contains("report"), "{out}");
     assert!(!folder.path("poecal-out/report.html").exists(), "an old report stands beside new results");
     let run = folder.run("calibrate robot.urdf measurements.csv --out new --report missing/page.html");
@@ -27,22 +27,22 @@ fn calibrate_writes_the_report_where_it_is_asked_to() {
 
 #[test]
 fn the_report_made_again_is_the_same() {
-    let folder = session(Kind::MIXED);
+    let folder = session(SessionKind::MIXED);
     write_measurements(
         &folder,
         "other.csv",
-        Kind::POINT,
+        SessionKind::POINT,
         "mirror",
         &Simulation { count: 60, ..Simulation::default() },
     );
-    folder.done("calibrate robot.urdf measurements.csv --robust huber");
-    folder.done("calibrate robot.urdf other.csv --out targets");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --robust huber");
+    folder.run_to_success("calibrate robot.urdf other.csv --out targets");
     for out in ["poecal-out", "targets"] {
         let page = folder.read(&format!("{out}/report.html"));
-        folder.done(&format!("report {out}/calibration.json -o again.html"));
+        folder.run_to_success(&format!("report {out}/calibration.json -o again.html"));
         assert!(folder.read("again.html") == page, "{out}");
         folder.write(&format!("{out}/report.html"), "<meta name=\"generator\" content=\"poecal 0.0.9\">old");
-        folder.done(&format!("report {out}/calibration.json"));
+        folder.run_to_success(&format!("report {out}/calibration.json"));
         assert!(folder.read(&format!("{out}/report.html")) == page, "{out}");
     }
     let words = "report poecal-out/calibration.json --residuals targets/residuals.csv -o third.html";
@@ -52,9 +52,9 @@ fn the_report_made_again_is_the_same() {
 
 #[test]
 fn a_report_states_the_session() {
-    let folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga");
-    folder.done("report poecal-out/calibration.json --record operator=Quirin -o page.html");
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga");
+    folder.run_to_success("report poecal-out/calibration.json --record operator=Quirin -o page.html");
     let page = folder.read("page.html");
     assert!(page.contains("4711") && page.contains(">Quirin<") && !page.contains(">Walburga<"));
     let run = folder.run("report poecal-out/calibration.json --record colour=red -o other.html");
@@ -63,8 +63,8 @@ fn a_report_states_the_session() {
 
 #[test]
 fn the_file_names_what_it_was_made_of_and_how() {
-    let folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");
     let inputs = calibration(&folder, "a").inputs;
     assert_eq!(
         inputs.command.as_deref(),
@@ -79,8 +79,8 @@ fn the_file_names_what_it_was_made_of_and_how() {
 #[cfg(unix)]
 #[test]
 fn what_comes_through_a_pipe_has_its_own_checksum_or_none() {
-    let folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv --out files --report none");
+    let folder = session(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out files --report none");
     let files = calibration(&folder, "files").inputs.sha256;
     for (words, piped) in [
         ("calibrate robot.urdf /dev/stdin --out measurements --report none", "measurements.csv"),
@@ -97,8 +97,8 @@ fn what_comes_through_a_pipe_has_its_own_checksum_or_none() {
 
 #[test]
 fn mistakes_are_told() {
-    let folder: Folder = session(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv");
+    let folder: Folder = session(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv");
     for (words, expected) in [
         ("report missing.json", "missing.json: found no such file"),
         (

@@ -1,6 +1,6 @@
 //! `poecal reproduce`, and the formulations of `poecal calibrate`.
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::Folder;
 use crate::session::session;
@@ -12,7 +12,7 @@ fn json(text: &str) -> serde_json::Value {
 #[test]
 fn reproduction_writes_its_report() {
     let folder = Folder::new();
-    let out = folder.done("reproduce lou2009 --out report --trials 3 --starts 2");
+    let out = folder.run_to_success("reproduce lou2009 --out report --trials 3 --starts 2");
     assert!(out.lines().all(|line| line.starts_with("written") || line.chars().count() <= 80), "{out}");
     assert!(out.contains("The matrix of (9) has rank 42 of 48 columns"), "{out}");
     let results = json(&folder.read("report/results.json"));
@@ -43,7 +43,7 @@ fn reproduction_writes_its_report() {
     // The command that the report names makes the same files.
     let command = results["command"].as_str().unwrap();
     let arguments = command.strip_prefix("poecal ").unwrap().replace("--out DIR", "--out again --quiet");
-    folder.done(&arguments);
+    folder.run_to_success(&arguments);
     for name in ["results.json", "report.md", "report.html"] {
         assert_eq!(folder.read(&format!("report/{name}")), folder.read(&format!("again/{name}")));
     }
@@ -51,7 +51,7 @@ fn reproduction_writes_its_report() {
     let before = folder.listing();
     let again = "reproduce lou2009 --out report --trials 3 --starts 2";
     assert_eq!(folder.run(again).code, 2);
-    folder.done(&format!("{again} --force --threads 1 --quiet"));
+    folder.run_to_success(&format!("{again} --force --threads 1 --quiet"));
     assert!(before == folder.listing());
 }
 
@@ -72,7 +72,7 @@ fn reproduction_refuses_what_it_cannot_do() {
 
 #[test]
 fn every_formulation_can_be_chosen() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let mut predictions = Vec::new();
     folder.write(
         "joints.csv",
@@ -85,7 +85,7 @@ fn every_formulation_can_be_chosen() {
         ("adjoint-offsets", "levenberg-marquardt", 33),
     ] {
         let options = format!("--formulation {formulation} --out {formulation}");
-        folder.done(&format!(
+        folder.run_to_success(&format!(
             "calibrate robot.urdf measurements.csv --held-out 0 --tolerance none --corrections off {options}"
         ));
         let file = json(&folder.read(&format!("{formulation}/calibration.json")));
@@ -94,7 +94,7 @@ fn every_formulation_can_be_chosen() {
         assert_eq!(file["solver"]["joint_offsets"].is_array(), formulation.ends_with("offsets"));
         println!("{formulation}: {} iterations", file["solver"]["iterations"]);
         assert!(file["identifiability"]["parameters"] == unknowns);
-        predictions.push(folder.done(&format!("predict {formulation}/calibration.json joints.csv")));
+        predictions.push(folder.run_to_success(&format!("predict {formulation}/calibration.json joints.csv")));
     }
     // Offsets are moved into the screws of the written models: the same robot, in both formulations.
     let numbers = |text: &str| -> Vec<f64> {
@@ -108,9 +108,9 @@ fn every_formulation_can_be_chosen() {
 
 #[test]
 fn residual_and_method_can_be_chosen() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let out = folder
-        .done("calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton --verbose");
+        .run_to_success("calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton --verbose");
     assert!(out.contains("formulation   adjoint, spatial residual of poses, gauss-newton"), "{out}");
     let run = folder.run("calibrate robot.urdf measurements.csv --formulation screws --out other");
     assert!(run.code == 2 && run.err.contains("screw"), "{run:?}");
@@ -118,13 +118,13 @@ fn residual_and_method_can_be_chosen() {
 
 #[test]
 fn a_residual_of_poses_says_that_points_have_none() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let run = folder.run("calibrate robot.urdf measurements.csv --residual spatial --verbose");
     assert_eq!(run.code, 0, "{run:?}");
     let words = "--residual spatial has no effect: it is about measured frames, and there are none";
     assert!(run.err.contains(words), "{}", run.err);
     assert!(!run.out.contains("residual of poses"), "{}", run.out);
     let out = folder
-        .done("calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets --verbose");
+        .run_to_success("calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets --verbose");
     assert!(out.contains("formulation   adjoint-offsets, levenberg-marquardt; joint offsets"), "{out}");
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use poecal_results::calibration_file::CalibrationFile;
 use poecal_results::model::Model;
 
@@ -11,7 +11,7 @@ use crate::folder::Folder;
 pub(crate) const ROBOT: &str = include_str!("../../../../examples/elbow/robot.urdf");
 
 /// A folder with `robot.urdf` and `measurements.csv`: 60 rows with `id` and `stage` (1 in the first 40, then 2).
-pub(crate) fn session(kind: Kind) -> Folder {
+pub(crate) fn session(kind: SessionKind) -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
     write_measurements(
@@ -28,7 +28,7 @@ pub(crate) fn session(kind: Kind) -> Folder {
 pub(crate) fn write_measurements(
     folder: &Folder,
     name: &str,
-    kind: Kind,
+    kind: SessionKind,
     target: &str,
     simulation: &Simulation,
 ) {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::folder::Folder;
-use crate::recorded::{MODEL, joined, session};
+use crate::recorded::{MODEL, join_numbers, session};
 
 const HEAD: &str = "// SpatialAnalyzer SA 2024.2\n// Points Relative to Coordinate Frame 'A::WORLD'\n// AXES = CARTESIAN: X,  Y,  Z (mm)\n";
 
@@ -14,8 +14,12 @@ fn points() -> (Folder, Vec<String>) {
     let mut text = "id,joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n".to_owned();
     let mut lines = Vec::new();
     for (k, (joints, place, _)) in rows.iter().enumerate() {
-        text += &format!("P{},{}\n", k + 1, joined(joints, 6, ","));
-        lines.push(format!("Robot,  P{},  0,  {},  02/12/25 16:{k:02}:00", k + 1, joined(place, 6, ",  ")));
+        text += &format!("P{},{}\n", k + 1, join_numbers(joints, 6, ","));
+        lines.push(format!(
+            "Robot,  P{},  0,  {},  02/12/25 16:{k:02}:00",
+            k + 1,
+            join_numbers(place, 6, ",  ")
+        ));
     }
     fs::write(folder.path("joints.csv"), text).unwrap();
     (folder, lines)

@@ -1,6 +1,6 @@
 //! Several stations of the measuring device: `--device-frames per-file`, the column `instrument`, and refused options.
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_results::residuals::Residuals;
 
 use crate::folder::Folder;
@@ -8,8 +8,8 @@ use crate::session::{calibration, session};
 
 /// The simulated session of points, its later rows seen from another station: a column `instrument` in `both.csv`, and files of their own,
 /// `monday.csv` and `tuesday.csv`.
-fn moved() -> Folder {
-    let folder = session(Kind::POINT);
+fn folder_with_moved_rows() -> Folder {
+    let folder = session(SessionKind::POINT);
     let text = folder.read("measurements.csv");
     let (header, rows) = text.split_once('\n').unwrap();
     let names: Vec<&str> = header.split(',').collect();
@@ -37,10 +37,10 @@ fn moved() -> Folder {
 
 #[test]
 fn each_file_or_instrument_has_a_frame_of_its_own() {
-    let folder = moved();
-    folder.done("calibrate robot.urdf measurements.csv --out one");
-    folder.done("calibrate robot.urdf both.csv --out named");
-    folder.done("calibrate robot.urdf monday.csv tuesday.csv --device-frames per-file --out files");
+    let folder = folder_with_moved_rows();
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out one");
+    folder.run_to_success("calibrate robot.urdf both.csv --out named");
+    folder.run_to_success("calibrate robot.urdf monday.csv tuesday.csv --device-frames per-file --out files");
     let rms = |name: &str| calibration(&folder, name).accuracy.held_out.unwrap().calibrated.position_mm().rms;
     assert!(rms("named") < 1.5 * rms("one"), "{} {}", rms("named"), rms("one"));
     assert!((rms("named") - rms("files")).abs() < 1e-6, "{} {}", rms("named"), rms("files"));
@@ -65,16 +65,16 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
         "poecal.toml",
         "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['monday.csv', 'tuesday.csv']\ndevice_frames = 'per-file'\nout = 'settings'\n",
     );
-    folder.done("calibrate");
+    folder.run_to_success("calibrate");
     assert_eq!(calibration(&folder, "settings").stations.len(), 2);
     folder.write("map.toml", "instrument = 'stage'\n");
-    folder.done("calibrate robot.urdf measurements.csv --columns map.toml --out mapped");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --columns map.toml --out mapped");
     assert_eq!(calibration(&folder, "mapped").stations.len(), 2);
 }
 
 #[test]
 fn files_that_were_measured_from_two_places_are_named_without_the_option() {
-    let folder = moved();
+    let folder = folder_with_moved_rows();
     let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --out repaired --verbose");
     let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     println!("{said}");
@@ -93,10 +93,10 @@ fn files_that_were_measured_from_two_places_are_named_without_the_option() {
 
 #[test]
 fn validation_takes_the_frame_of_each_instrument() {
-    let folder = moved();
-    folder.done("calibrate robot.urdf both.csv --out out");
+    let folder = folder_with_moved_rows();
+    folder.run_to_success("calibrate robot.urdf both.csv --out out");
     let rms = |arguments: &str| -> f64 {
-        let text = folder.done(&format!("validate out/calibration.json {arguments} --json"));
+        let text = folder.run_to_success(&format!("validate out/calibration.json {arguments} --json"));
         let value: serde_json::Value = serde_json::from_str(&text).unwrap();
         value["calibrated"]["position_mm"]["rms"].as_f64().unwrap()
     };
@@ -117,7 +117,7 @@ fn validation_takes_the_frame_of_each_instrument() {
         "found measurements of instrument `monday.csv`, whose frame is not in the calibration, expected one of left, right: rename \
          it, or refit the frames with --refit device",
     );
-    folder.done("calibrate robot.urdf monday.csv --out one");
+    folder.run_to_success("calibrate robot.urdf monday.csv --out one");
     let run = folder.run("validate one/calibration.json both.csv");
     let sentence = "found measurements of 2 instruments, expected those of one, since the calibration has one device frame: judge each \
                     by itself, or refit the frames with --refit device";
@@ -126,7 +126,7 @@ fn validation_takes_the_frame_of_each_instrument() {
 
 #[test]
 fn what_does_not_go_together_is_refused() {
-    let folder = moved();
+    let folder = folder_with_moved_rows();
     let refused = |arguments: &str, sentence: &str| {
         let run = folder.run(&format!("calibrate robot.urdf {arguments} --out out"));
         assert!(
@@ -142,7 +142,7 @@ fn what_does_not_go_together_is_refused() {
     );
     // The frame of held-out rows is estimated from these.
     folder
-        .done("calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged");
+        .run_to_success("calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged");
     let columns = folder.read("both.csv").lines().next().unwrap().rfind("instrument").unwrap() + 1;
     refused(
         "both.csv --device-frames per-file",

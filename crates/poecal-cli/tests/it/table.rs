@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use poecal_results::model::Model;
 
 use crate::folder::Folder;
@@ -55,11 +55,12 @@ fn check(out: &str) {
 }
 
 /// Measurements of the elbow in which most joints hardly move, one does not move, and some rows are wrong.
-fn poor() -> Folder {
+fn folder_with_poor_rows() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
-    let made = Simulation { count: 80, ..Simulation::default() }.run(&model.robot, Kind::POINT).unwrap();
+    let made =
+        Simulation { count: 80, ..Simulation::default() }.run(&model.robot, SessionKind::POINT).unwrap();
     let mut text = format!("{},x,y,z\n", made.data.reading_names().join(","));
     for row in 0..made.data.len() {
         let readings = made.data.readings(row);
@@ -83,7 +84,7 @@ fn the_first_command_prints_a_short_table() {
     let folder = Folder::new();
     let elbow = root().join("examples/elbow");
     let words = format!("calibrate {0}/robot.urdf {0}/points.csv", elbow.display());
-    let out = folder.done(&words);
+    let out = folder.run_to_success(&words);
     println!("{out}");
     check(&out);
     assert!(out.lines().count() <= LINES, "{} lines", out.lines().count());
@@ -103,7 +104,7 @@ fn the_first_command_prints_a_short_table() {
         "{out}"
     );
 
-    let full = folder.done(&format!("{words} --force --verbose"));
+    let full = folder.run_to_success(&format!("{words} --force --verbose"));
     for words in [
         "training (70)",
         "nominal   registered   calibrated",
@@ -121,7 +122,7 @@ fn the_first_command_prints_a_short_table() {
 
 #[test]
 fn a_bad_day_is_told_in_short_lists_and_in_full_on_demand() {
-    let folder = poor();
+    let folder = folder_with_poor_rows();
     let run = folder.run("calibrate robot.urdf poor.csv");
     println!("{}{}", run.err, run.out);
     check(&run.out);
@@ -142,7 +143,7 @@ fn a_bad_day_is_told_in_short_lists_and_in_full_on_demand() {
 
 #[test]
 fn warnings_stand_in_the_table_or_on_standard_error_and_not_in_both() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let text = folder.read("measurements.csv");
     let copied = text.lines().nth(3).unwrap();
     folder.write("measurements.csv", format!("{text}{copied}\n"));
@@ -160,8 +161,8 @@ fn warnings_stand_in_the_table_or_on_standard_error_and_not_in_both() {
 
 #[test]
 fn without_held_out_rows_the_fitted_ones_are_shown_and_named() {
-    let folder = session(Kind::POSE);
-    let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0");
+    let folder = session(SessionKind::POSE);
+    let out = folder.run_to_success("calibrate robot.urdf measurements.csv --held-out 0");
     check(&out);
     assert!(
         out.contains("\nfitted        60 rows, at most 0.")
@@ -172,7 +173,7 @@ fn without_held_out_rows_the_fitted_ones_are_shown_and_named() {
 
 #[test]
 fn suspected_rows_do_not_count_in_the_last_row() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let text = folder.read("measurements.csv");
     let knocked: Vec<String> = text
         .lines()

@@ -2,27 +2,27 @@
 
 use poecal_import as measurements;
 use poecal_import::ReadOptions;
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 
 use crate::session::{calibration, numbers, session, write_measurements};
 
 #[test]
 fn named_targets_are_predicted_by_name() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     let simulation = Simulation { count: 60, ..Simulation::default() };
-    write_measurements(&folder, "smr.csv", Kind::POINT, "smr1", &simulation);
-    folder.done("calibrate robot.urdf smr.csv");
+    write_measurements(&folder, "smr.csv", SessionKind::POINT, "smr1", &simulation);
+    folder.run_to_success("calibrate robot.urdf smr.csv");
     let file = calibration(&folder, "poecal-out");
     let robot = file.robot().unwrap();
     let data = measurements::read(&[folder.path("smr.csv")], &robot, &ReadOptions::default()).unwrap().data;
-    let out = folder.done("predict poecal-out/calibration.json smr.csv --target smr1 --output-frame device");
+    let out = folder.run_to_success("predict poecal-out/calibration.json smr.csv --target smr1 --output-frame device");
     for (row, predicted) in numbers(&out, 1).iter().enumerate() {
         let measured = data.observations[row].measurement.pose();
         let distance = (0..3).map(|k| (predicted[k] - measured.translation[k]).powi(2)).sum::<f64>().sqrt();
         assert!(distance < 5e-4, "row {row}: {distance} m");
     }
     // A point has the tip's orientation.
-    let tip = numbers(&folder.done("predict poecal-out/calibration.json smr.csv --output-frame device"), 1);
+    let tip = numbers(&folder.run_to_success("predict poecal-out/calibration.json smr.csv --output-frame device"), 1);
     assert_eq!(numbers(&out, 1)[0][3..], tip[0][3..]);
     let run = folder.run("predict poecal-out/calibration.json smr.csv --target smr2");
     assert_eq!(run.code, 2);
@@ -45,23 +45,23 @@ fn named_targets_are_predicted_by_name() {
             "found orientations of target `smr1`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, or refit the targets with --refit tool",
         ),
     ];
-    write_measurements(&folder, "other.csv", Kind::POINT, "smr2", &simulation);
-    write_measurements(&folder, "poses.csv", Kind::POSE, "smr1", &simulation);
+    write_measurements(&folder, "other.csv", SessionKind::POINT, "smr2", &simulation);
+    write_measurements(&folder, "poses.csv", SessionKind::POSE, "smr1", &simulation);
     for (name, sentence) in refusals {
         let run = folder.run(&format!("validate poecal-out/calibration.json {name}"));
         assert_eq!((run.code, run.err), (2, format!("error: {sentence}\n")));
-        folder.done(&format!("validate poecal-out/calibration.json {name} --refit tool"));
+        folder.run_to_success(&format!("validate poecal-out/calibration.json {name} --refit tool"));
     }
 }
 
 #[test]
 fn validation_judges_other_sessions() {
-    let folder = session(Kind::POSE);
-    folder.done("calibrate robot.urdf measurements.csv");
+    let folder = session(SessionKind::POSE);
+    folder.run_to_success("calibrate robot.urdf measurements.csv");
     let own_rms = calibration(&folder, "poecal-out").accuracy.held_out.unwrap().calibrated.position_mm().rms;
     let json = |arguments: &str| -> serde_json::Value {
         serde_json::from_str(
-            &folder.done(&format!("validate poecal-out/calibration.json {arguments} --json")),
+            &folder.run_to_success(&format!("validate poecal-out/calibration.json {arguments} --json")),
         )
         .unwrap()
     };
@@ -69,7 +69,7 @@ fn validation_judges_other_sessions() {
 
     // The same robot and device, in configurations that the calibration did not use: those after its 60 rows.
     let more = Simulation { count: 160, ..Simulation::default() };
-    write_measurements(&folder, "all.csv", Kind::POSE, "", &more);
+    write_measurements(&folder, "all.csv", SessionKind::POSE, "", &more);
     let all = folder.read("all.csv");
     let is_new = |(line, _): &(usize, &str)| *line == 0 || *line > 60;
     let new: Vec<&str> = all.lines().enumerate().filter(is_new).map(|(_, line)| line).collect();
@@ -84,7 +84,13 @@ fn validation_judges_other_sessions() {
     assert!(found["calibrated"]["rotation_deg"]["rms"].as_f64().unwrap() < 0.04);
 
     // The same robot with the device elsewhere: positions in the base's own frame.
-    write_measurements(&folder, "moved.csv", Kind::POSE, "", &Simulation { device_anywhere: false, ..more });
+    write_measurements(
+        &folder,
+        "moved.csv",
+        SessionKind::POSE,
+        "",
+        &Simulation { device_anywhere: false, ..more },
+    );
     let run = folder.run("validate poecal-out/calibration.json moved.csv");
     assert_eq!(run.code, 1);
     println!("{}", run.err.trim_end());
@@ -102,7 +108,7 @@ fn validation_judges_other_sessions() {
     assert!(moved["refitted"] == true && moved["after_rms"].as_f64() < moved["before_rms"].as_f64());
     assert!(
         folder
-            .done("validate poecal-out/calibration.json moved.csv --refit auto")
+            .run_to_success("validate poecal-out/calibration.json moved.csv --refit auto")
             .contains("the device stands ")
     );
     // With an unmoved device, nothing is refitted.
@@ -116,9 +122,9 @@ fn validation_judges_other_sessions() {
     let found = json("moved.csv --refit device,tool");
     assert_eq!(found["refitted"], serde_json::json!(["device_frame", "tool"]));
     assert!(rms(&found["calibrated"]) < 1.5 * own_rms && rms(&found["nominal"]) > 20.0 * own_rms);
-    let out = folder.done("validate poecal-out/calibration.json moved.csv --refit device,tool");
+    let out = folder.run_to_success("validate poecal-out/calibration.json moved.csv --refit device,tool");
     assert!(out.contains("nominal   calibrated") && out.lines().all(|line| line.len() <= 80), "{out}");
-    assert_eq!(folder.done("validate poecal-out/calibration.json more.csv --quiet"), "");
+    assert_eq!(folder.run_to_success("validate poecal-out/calibration.json more.csv --quiet"), "");
 
     folder.write("one.csv", folder.read("more.csv").lines().take(2).collect::<Vec<_>>().join("\n"));
     let run = folder.run("validate poecal-out/calibration.json one.csv --refit device");
@@ -131,11 +137,11 @@ fn validation_judges_other_sessions() {
 
 #[test]
 fn the_nominal_model_is_judged_where_all_it_cannot_know_is_found_anew() {
-    let folder = session(Kind::POSE);
+    let folder = session(SessionKind::POSE);
     let at_base = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
-    write_measurements(&folder, "base.csv", Kind::POSE, "", &at_base);
-    folder.done("calibrate robot.urdf base.csv --device-frame base --out base");
-    folder.done("calibrate robot.urdf base.csv --out anywhere");
+    write_measurements(&folder, "base.csv", SessionKind::POSE, "", &at_base);
+    folder.run_to_success("calibrate robot.urdf base.csv --device-frame base --out base");
+    folder.run_to_success("calibrate robot.urdf base.csv --out anywhere");
     for (name, refit, is_judged) in [
         ("base", "", false),
         ("base", "--refit device", false),
@@ -143,7 +149,7 @@ fn the_nominal_model_is_judged_where_all_it_cannot_know_is_found_anew() {
         ("anywhere", "--refit tool", false),
         ("anywhere", "--refit device,tool", true),
     ] {
-        let out = folder.done(&format!("validate {name}/calibration.json base.csv {refit}"));
+        let out = folder.run_to_success(&format!("validate {name}/calibration.json base.csv {refit}"));
         assert_eq!(out.contains(" nominal   calibrated"), is_judged, "{name} {refit}\n{out}");
     }
 }

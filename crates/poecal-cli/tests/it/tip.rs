@@ -1,6 +1,6 @@
 //! The tip is the model's, and the measured object is a target of its own; with `--move-tip` the measured object becomes the tip.
 
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, calibration, numbers, session, write_measurements};
@@ -12,14 +12,14 @@ const GRIPPER: &str = "  <link name=\"flange\"/>\n  <joint name=\"flange_mount\"
     <child link=\"gripper\"/>\n    <origin xyz=\"0.01 0.02 0.03\" rpy=\"-0.5 0 1.5708\"/>\n  </joint>\n</robot>";
 
 /// A session of the elbow, with a gripper in the model behind the reflector's position.
-fn with_gripper(kind: Kind) -> Folder {
+fn with_gripper(kind: SessionKind) -> Folder {
     let folder = session(kind);
     folder.write("robot.urdf", ROBOT.replace("</robot>", GRIPPER));
     folder
 }
 
 /// Lines of `calibrated.urdf` that are not in the model, with the joint to which they belong.
-fn changed(folder: &Folder) -> Vec<(String, String)> {
+fn changed_lines(folder: &Folder) -> Vec<(String, String)> {
     let (before, after) = (folder.read("robot.urdf"), folder.read("results/calibrated.urdf"));
     let mut joint = String::new();
     let mut found = Vec::new();
@@ -37,10 +37,10 @@ fn changed(folder: &Folder) -> Vec<(String, String)> {
 
 #[test]
 fn links_beyond_the_last_joint_keep_the_numbers_of_the_model() {
-    for kind in [Kind::POINT, Kind::POSE] {
+    for kind in [SessionKind::POINT, SessionKind::POSE] {
         let folder = with_gripper(kind);
-        let told = folder.done("calibrate robot.urdf measurements.csv --out results --verbose");
-        let found = changed(&folder);
+        let told = folder.run_to_success("calibrate robot.urdf measurements.csv --out results --verbose");
+        let found = changed_lines(&folder);
         println!(
             "{kind:?}: {} lines changed; {}",
             found.len(),
@@ -60,16 +60,16 @@ fn links_beyond_the_last_joint_keep_the_numbers_of_the_model() {
         // Written for people and read again, in other forms too.
         let page = folder.read("results/report.html");
         assert!(page.contains("Targets in the frame of gripper"));
-        folder.done("export results/calibration.json --format toml --out calibrated.toml");
+        folder.run_to_success("export results/calibration.json --format toml --out calibrated.toml");
         assert!(folder.read("calibrated.toml").contains("measured"));
     }
 }
 
 #[test]
 fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
-    let folder = with_gripper(Kind::POINT);
-    folder.done("calibrate robot.urdf measurements.csv --out results");
-    folder.done("calibrate robot.urdf measurements.csv --out moved --move-tip");
+    let folder = with_gripper(SessionKind::POINT);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out results");
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out moved --move-tip");
     let measured = |text: &str, skip: usize| -> Vec<[f64; 3]> {
         numbers(text, skip).iter().map(|row| [row[0], row[1], row[2]]).collect()
     };
@@ -87,7 +87,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
             [cells[0], cells[1], cells[2]]
         })
         .collect();
-    let predict = |options: &str| measured(&folder.done(&format!("predict {options} measurements.csv")), 1);
+    let predict = |options: &str| measured(&folder.run_to_success(&format!("predict {options} measurements.csv")), 1);
     let (by_target, by_tip) = (
         predict("results/calibration.json --output-frame device"),
         predict("moved/calibration.json --output-frame device"),
@@ -108,7 +108,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
     assert!(rms(&target, &predict("moved/calibration.json --output-frame base")) < 0.05);
     // A file without names is judged by either.
     for name in ["results", "moved"] {
-        let judged = folder.done(&format!("validate {name}/calibration.json measurements.csv --json"));
+        let judged = folder.run_to_success(&format!("validate {name}/calibration.json measurements.csv --json"));
         let found: serde_json::Value = serde_json::from_str(&judged).unwrap();
         let rms = found["calibrated"]["position_mm"]["rms"].as_f64().unwrap();
         let inside = found["promised"]["parts"]["position"]["inside"].clone();
@@ -119,15 +119,15 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
 
 #[test]
 fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
-    let folder = session(Kind::POINT);
-    let told = folder.done("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
+    let folder = session(SessionKind::POINT);
+    let told = folder.run_to_success("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
     assert!(told.contains("tip           the point that was measured, by --move-tip"), "{told}");
     let file = calibration(&folder, "results");
     assert!(file.move_tip && file.targets.is_empty());
-    assert!(changed(&folder).iter().any(|(joint, _)| joint == "tool_mount"));
+    assert!(changed_lines(&folder).iter().any(|(joint, _)| joint == "tool_mount"));
     // After a further calibration, the tip is unchanged.
     // There is nothing left to correct, which the table states.
-    let told = folder.done("calibrate results/calibration.json measurements.csv --out again");
+    let told = folder.run_to_success("calibrate results/calibration.json measurements.csv --out again");
     assert!(told.contains("\nconfirmed     the axes of your model"), "{told}");
     let again = calibration(&folder, "again").robot().unwrap();
     let place = again.targets[0].1.translation.norm();
@@ -137,12 +137,12 @@ fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
 
 #[test]
 fn which_target_is_meant_is_said_where_it_is_open() {
-    let folder = session(Kind::POINT);
+    let folder = session(SessionKind::POINT);
     for (name, seed) in [("left", 1), ("right", 2)] {
         write_measurements(
             &folder,
             &format!("{name}.csv"),
-            Kind::POINT,
+            SessionKind::POINT,
             name,
             &Simulation { seed, ..Simulation::default() },
         );
@@ -161,7 +161,7 @@ fn which_target_is_meant_is_said_where_it_is_open() {
     let run = folder.run("predict results/calibration.json left.csv --output-frame device");
     println!("{}", run.err.trim_end());
     assert!(run.code == 2 && run.err.contains("write --target left"), "{}", run.err);
-    folder.done("predict results/calibration.json left.csv --output-frame device --target left");
+    folder.run_to_success("predict results/calibration.json left.csv --output-frame device --target left");
     let run = folder.run("validate results/calibration.json measurements.csv");
     assert!(
         run.code == 2 && run.err.contains("without a target's name, expected one of left, right"),

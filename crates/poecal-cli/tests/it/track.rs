@@ -6,8 +6,8 @@ use crate::folder::Folder;
 fn cell() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.done("simulate robot.urdf --kind point --count 60 --seed 3 --out cell");
-    folder.done("calibrate cell/nominal.urdf cell/measurements.csv --corrections off --report none");
+    folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 3 --out cell");
+    folder.run_to_success("calibrate cell/nominal.urdf cell/measurements.csv --corrections off --report none");
     folder
 }
 
@@ -20,8 +20,8 @@ fn the_same_rows_are_unchanged_and_a_line_of_the_history() {
     let history = folder.read("poecal-out/history.jsonl");
     assert!(history.contains("poecal-track-1") && history.lines().count() == 1, "{history}");
     // Both commands read a history that has lines of both.
-    folder.done("validate poecal-out/calibration.json cell/measurements.csv");
-    folder.done("track poecal-out/calibration.json cell/measurements.csv --repeatability 0.05mm");
+    folder.run_to_success("validate poecal-out/calibration.json cell/measurements.csv");
+    folder.run_to_success("track poecal-out/calibration.json cell/measurements.csv --repeatability 0.05mm");
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 2);
 }
 
@@ -29,7 +29,7 @@ fn the_same_rows_are_unchanged_and_a_line_of_the_history() {
 #[test]
 fn a_visit_is_a_page_to_sign() {
     let folder = cell();
-    folder.done("calibrate cell/nominal.urdf cell/measurements.csv --out then --corrections off --record serial=4711 --record operator=Ann --record date=2026-05-28");
+    folder.run_to_success("calibrate cell/nominal.urdf cell/measurements.csv --out then --corrections off --record serial=4711 --record operator=Ann --record date=2026-05-28");
     let rows = folder.read("cell/measurements.csv");
     let shifted = rows.lines().map(|line| {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
@@ -85,11 +85,11 @@ fn witnesses_are_planned_and_written() {
 #[test]
 fn visits_are_planned_by_plan_for_drift() {
     let folder = cell();
-    folder.done("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out one.csv");
+    folder.run_to_success("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out one.csv");
     let run =
         folder.run("plan poecal-out/calibration.json --purpose drift --repeatability 0.05mm --out two.csv");
     assert_eq!((run.code, folder.read("one.csv")), (0, folder.read("two.csv")), "{}", run.err);
-    folder.done("plan robot.urdf --count 20 --out new.csv");
+    folder.run_to_success("plan robot.urdf --count 20 --out new.csv");
     let words = "plan poecal-out/calibration.json --purpose drift --device known --count 6 --candidates new.csv --out three.csv";
     let run = folder.run(words);
     assert!(run.code == 0 && run.out.contains("6, new"), "{}{}", run.out, run.err);
@@ -112,7 +112,7 @@ fn visits_are_planned_by_plan_for_drift() {
 #[test]
 fn rows_that_repeat_nothing_are_judged_by_the_model() {
     let folder = cell();
-    folder.done("simulate robot.urdf --kind point --count 30 --seed 4 --out other");
+    folder.run_to_success("simulate robot.urdf --kind point --count 30 --seed 4 --out other");
     let run = folder.run("track poecal-out/calibration.json other/measurements.csv --history none");
     assert!(run.err.contains("none of the rows repeats"), "{}{}", run.out, run.err);
     let model = folder.read("cell/nominal.urdf") + "<!-- another -->\n";
@@ -146,9 +146,9 @@ fn what_cannot_be_judged_is_refused() {
 #[test]
 fn another_robot_is_not_called_unchanged() {
     let folder = cell();
-    folder.done("simulate robot.urdf --kind point --count 60 --seed 4 --out other");
+    folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 4 --out other");
     // The same readings with the other robot's measurements.
-    folder.done("predict other/actual.urdf cell/measurements.csv --out places.csv");
+    folder.run_to_success("predict other/actual.urdf cell/measurements.csv --out places.csv");
     let (rows, places) = (folder.read("cell/measurements.csv"), folder.read("places.csv"));
     let mut joined = String::new();
     for (row, place) in rows.lines().filter(|line| !line.starts_with('#')).zip(places.lines()) {
@@ -172,7 +172,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// Rows of the cell by its actual robot, with the target elsewhere on the flange and the device elsewhere, metres.
 fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
-    folder.done("predict cell/actual.urdf cell/measurements.csv --out poses.csv --force");
+    folder.run_to_success("predict cell/actual.urdf cell/measurements.csv --out poses.csv --force");
     let (rows, poses) = (folder.read("cell/measurements.csv"), folder.read("poses.csv"));
     let mut rows = rows.lines().filter(|line| !line.starts_with('#'));
     let mut joined =
@@ -195,8 +195,8 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
 fn another_tool_and_another_place_of_the_device_are_named() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.done("simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell");
-    folder.done(
+    folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell");
+    folder.run_to_success(
         "calibrate cell/nominal.urdf cell/measurements.csv --device-frame base --corrections off --report none",
     );
     let none = [0.0; 3];

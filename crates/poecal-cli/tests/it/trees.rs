@@ -12,7 +12,7 @@ const TREE: &str = "--instrument eyes=head_camera --instrument chest=torso --tar
 fn seen_by_two() -> Folder {
     let folder = Folder::new();
     folder.write("torso.urdf", TORSO);
-    folder.done(&format!(
+    folder.run_to_success(&format!(
         "simulate torso.urdf {TREE} --count 300 --held-out-count 40 --errors 0.5deg,2mm --out sim"
     ));
     folder
@@ -23,13 +23,13 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
     let folder = seen_by_two();
     let header = folder.read("sim/measurements.csv");
     assert!(header.lines().nth(1).unwrap().ends_with(",qw,instrument,target"));
-    folder.done(&format!("calibrate torso.urdf sim/measurements.csv {TREE} --out out"));
+    folder.run_to_success(&format!("calibrate torso.urdf sim/measurements.csv {TREE} --out out"));
     let file = calibration(&folder, "out");
     let held_out = file.accuracy.held_out.as_ref().unwrap().calibrated.position_mm().rms;
     println!("held out: {held_out:.4} mm");
     assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
     let table = folder
-        .done(&format!("calibrate torso.urdf sim/measurements.csv {TREE} --out out --force --report none"));
+        .run_to_success(&format!("calibrate torso.urdf sim/measurements.csv {TREE} --out out --force --report none"));
     let said = table.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("no measurement sees joints torso1 and torso2 move"), "{table}");
 
@@ -39,9 +39,9 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
     let rows = folder.read("sim/held_out.csv").lines().skip(1).count();
     for target in ["left", "right"] {
         let by_file =
-            folder.done(&format!("predict out/calibration.json sim/held_out.csv --target {target}"));
+            folder.run_to_success(&format!("predict out/calibration.json sim/held_out.csv --target {target}"));
         let by_urdf = folder
-            .done(&format!("predict out/calibrated.urdf sim/held_out.csv --target {target}={target}_hand"));
+            .run_to_success(&format!("predict out/calibrated.urdf sim/held_out.csv --target {target}={target}_hand"));
         // A URDF may need fewer joints for one hand; the readings are there nevertheless.
         assert_eq!(by_file.lines().count(), rows);
         for (a, b) in by_file.lines().zip(by_urdf.lines()).skip(1) {
@@ -51,12 +51,12 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
             assert!(apart < 1e-9, "{target}: {apart:e}");
         }
     }
-    folder.done("validate out/calibration.json sim/held_out.csv");
+    folder.run_to_success("validate out/calibration.json sim/held_out.csv");
     // A calibrated robot can be calibrated again, from each of the forms.
-    folder.done("export out/calibration.json --out torso.toml");
+    folder.run_to_success("export out/calibration.json --out torso.toml");
     for (model, out) in [("out/calibration.json", "again"), ("torso.toml", "from-toml")] {
         // There is nothing left to correct, which the table states.
-        let told = folder.done(&format!("calibrate {model} sim/measurements.csv --out {out}"));
+        let told = folder.run_to_success(&format!("calibrate {model} sim/measurements.csv --out {out}"));
         assert!(told.contains("\nconfirmed     the axes of your model"), "{told}");
     }
     for out in ["again", "from-toml"] {
@@ -73,46 +73,46 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
 fn settings_and_mappings_name_links_too() {
     let folder = seen_by_two();
     let options = format!("calibrate torso.urdf sim/measurements.csv {TREE} --out typed --report none");
-    folder.done(&options);
+    folder.run_to_success(&options);
     folder.write(
         "map.toml",
         "[mount.instruments]\neyes = 'head_camera'\nchest = 'torso'\n[mount.targets]\nleft = 'left_hand'\nright = 'right_hand'\n",
     );
-    folder.done("calibrate torso.urdf sim/measurements.csv --columns map.toml --out mapped --report none");
+    folder.run_to_success("calibrate torso.urdf sim/measurements.csv --columns map.toml --out mapped --report none");
     folder.write(
         "poecal.toml",
         "poecal_settings = 1\nmodel = 'torso.urdf'\nmeasurements = ['sim/measurements.csv']\n\
          instrument = ['eyes=head_camera', 'chest=torso']\ntarget = ['left=left_hand', 'right=right_hand']\nout = 'set'\nreport = 'none'\n",
     );
-    folder.done("calibrate");
+    folder.run_to_success("calibrate");
     let urdf = folder.read("typed/calibrated.urdf");
     assert_eq!(folder.read("set/calibrated.urdf"), urdf);
     let rms = |out: &str| calibration(&folder, out).accuracy.held_out.unwrap().calibrated.position_mm().rms;
     assert!((rms("mapped") - rms("typed")).abs() < 1e-9, "{} {}", rms("mapped"), rms("typed"));
-    folder.done(&format!("init torso.urdf {TREE} --out project"));
+    folder.run_to_success(&format!("init torso.urdf {TREE} --out project"));
     let settings = folder.read("project/poecal.toml");
     assert!(settings.contains("instrument = [\"eyes=head_camera\", \"chest=torso\"]"), "{settings}");
     let columns = folder.read("project/measurements.csv");
     assert!(columns.lines().last().unwrap().ends_with(",x[mm],y[mm],z[mm],instrument,target"), "{columns}");
     assert!(folder.read("project/README.md").contains("--target 'right=right_hand'"));
-    folder.done(&format!("plan torso.urdf --rows project/joints.csv --kind pose {TREE}"));
+    folder.run_to_success(&format!("plan torso.urdf --rows project/joints.csv --kind pose {TREE}"));
 }
 
 #[test]
 fn check_shows_which_joints_each_pair_sees() {
     let folder = Folder::new();
     folder.write("torso.urdf", TORSO);
-    let text = folder.done(&format!("check torso.urdf {TREE}"));
+    let text = folder.run_to_success(&format!("check torso.urdf {TREE}"));
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(text.contains("eyes to left: head_yaw, left1, left2, left3, left4, left5, left6"), "{text}");
     assert!(text.contains("unseen torso1, torso2: no way passes them"), "{text}");
-    let json: Value = serde_json::from_str(&folder.done(&format!("check torso.urdf {TREE} --json"))).unwrap();
+    let json: Value = serde_json::from_str(&folder.run_to_success(&format!("check torso.urdf {TREE} --json"))).unwrap();
     assert_eq!(json["sight"]["ways"].as_array().unwrap().len(), 4);
     assert_eq!(json["sight"]["unseen"], serde_json::json!(["torso1", "torso2"]));
     assert_eq!(json["model"]["joints"][8]["on"]["link_of"], "torso2");
     // A chain has none of this.
     let chain: Value =
-        serde_json::from_str(&folder.done("check torso.urdf --tip-link left_hand --json")).unwrap();
+        serde_json::from_str(&folder.run_to_success("check torso.urdf --tip-link left_hand --json")).unwrap();
     assert!(chain.get("sight").is_none() && chain["model"].get("mounted").is_none());
 }
 
@@ -155,8 +155,8 @@ fn a_camera_in_the_hand_sees_a_board_beside_the_robot() {
     let folder = Folder::new();
     folder.write("torso.urdf", TORSO);
     let named = "--instrument camera=right_hand --target board=base_link";
-    folder.done(&format!("simulate torso.urdf {named} --count 120 --out sim"));
-    folder.done(&format!("calibrate torso.urdf sim/measurements.csv {named} --out out"));
+    folder.run_to_success(&format!("simulate torso.urdf {named} --count 120 --out sim"));
+    folder.run_to_success(&format!("calibrate torso.urdf sim/measurements.csv {named} --out out"));
     let file = calibration(&folder, "out");
     let held_out = file.accuracy.held_out.as_ref().unwrap().calibrated.position_mm().rms;
     println!("held out: {held_out:.4} mm");

@@ -1,6 +1,6 @@
 //! The verdict, and the uncertainty of predictions.
 
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 use crate::folder::Folder;
 use crate::session::session;
@@ -10,8 +10,8 @@ fn json(folder: &Folder, name: &str) -> serde_json::Value {
 }
 
 /// Measurements in which joint2 hardly moves.
-fn narrow() -> Folder {
-    let folder = session(Kind::POSE);
+fn folder_with_narrow_range() -> Folder {
+    let folder = session(SessionKind::POSE);
     let text = folder.read("measurements.csv");
     let mut kept = vec![text.lines().next().unwrap().to_owned()];
     let column = kept[0].split(',').position(|name| name == "joint2").unwrap();
@@ -24,8 +24,8 @@ fn narrow() -> Folder {
 /// A required gain is shown: a file that does not state a gain ends with 1, without a warning.
 #[test]
 fn a_gain_that_is_asked_for_is_shown() {
-    let folder = session(Kind::POSE);
-    folder.done("calibrate robot.urdf measurements.csv --out all --require-gain");
+    let folder = session(SessionKind::POSE);
+    folder.run_to_success("calibrate robot.urdf measurements.csv --out all --require-gain");
     // One row far from singularities.
     folder.write("joints.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.3,-0.5,0.8,0.4,0.7,0.2\n");
     let joints = "compensate all/calibration.json joints.csv --dry-run --require-gain";
@@ -45,7 +45,7 @@ fn a_gain_that_is_asked_for_is_shown() {
 
 #[test]
 fn verdict_says_how_far_a_calibration_may_be_used() {
-    let folder = narrow();
+    let folder = folder_with_narrow_range();
     let good = folder.run("calibrate robot.urdf measurements.csv --out all --require good");
     assert_eq!(good.code, 0, "{good:?}");
     assert_eq!(json(&folder, "all/calibration.json")["verdict"]["level"], "good");
@@ -76,13 +76,13 @@ fn verdict_says_how_far_a_calibration_may_be_used() {
 
 #[test]
 fn predictions_state_their_error() {
-    let folder = narrow();
-    folder.done("calibrate robot.urdf narrow.csv --out some");
+    let folder = folder_with_narrow_range();
+    folder.run_to_success("calibrate robot.urdf narrow.csv --out some");
     folder.write(
         "joints.csv",
         "id,joint1,joint2,joint3,joint4,joint5,joint6\na,0.3,-0.4,-0.9,1,0.2,-3\nb,1.3,2.9,-0.7,0,1,2\n",
     );
-    let plain = folder.done("predict some/calibration.json joints.csv --target measured");
+    let plain = folder.run_to_success("predict some/calibration.json joints.csv --target measured");
     let run = folder.run("predict some/calibration.json joints.csv --with-uncertainty");
     assert!(
         run.code == 0 && run.err.contains("predicted the measured target `measured`; --target tip"),
@@ -110,8 +110,8 @@ fn predictions_state_their_error() {
 
 #[test]
 fn validation_says_whether_the_promise_was_kept() {
-    let folder = narrow();
-    folder.done("calibrate robot.urdf measurements.csv --train-where stage=1 --out all");
+    let folder = folder_with_narrow_range();
+    folder.run_to_success("calibrate robot.urdf measurements.csv --train-where stage=1 --out all");
     let run = folder.run("validate all/calibration.json measurements.csv --json");
     assert_eq!(run.code, 0, "{run:?}");
     let found: serde_json::Value = serde_json::from_str(&run.out).unwrap();
@@ -123,7 +123,7 @@ fn validation_says_whether_the_promise_was_kept() {
     println!("{:.1} % inside, expected {expected:.4} mm, found {rms:.4} mm", 100.0 * share);
     assert!(share > 0.85 && (0.7..1.4).contains(&(rms / expected)));
     assert!(promised["inside_sampled_range"].as_f64().unwrap() > 0.8);
-    let text = folder.done("validate all/calibration.json measurements.csv");
+    let text = folder.run_to_success("validate all/calibration.json measurements.csv");
     assert!(text.contains("inside their 95 % bounds"), "{text}");
 
     // A tool that was bent exceeds the bounds.
@@ -134,7 +134,7 @@ fn validation_says_whether_the_promise_was_kept() {
     let run = folder.run("validate bent.json measurements.csv");
     assert!(run.err.contains("exceed their 95 % bound"), "{run:?}");
     // With the tool refitted, the screws are as expected.
-    let anew = folder.done("validate bent.json measurements.csv --refit tool --json");
+    let anew = folder.run_to_success("validate bent.json measurements.csv --refit tool --json");
     let found: serde_json::Value = serde_json::from_str(&anew).unwrap();
     assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() > 0.85, "{anew}");
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use poecal_results::model::Model;
 
 use crate::folder::Folder;
@@ -16,8 +16,9 @@ fn folder() -> Folder {
     folder.write("robot.urdf", ROBOT);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
     let simulation = Simulation { count: 1500, ..Simulation::default() };
-    let made = simulation.run(&model.robot, Kind::POINT).unwrap();
-    let other = Simulation { seed: 2, count: 1, ..simulation }.run(&model.robot, Kind::POINT).unwrap().actual;
+    let made = simulation.run(&model.robot, SessionKind::POINT).unwrap();
+    let other =
+        Simulation { seed: 2, count: 1, ..simulation }.run(&model.robot, SessionKind::POINT).unwrap().actual;
     let is_inside =
         |row: usize| [1, 2].iter().all(|&joint| (made.data.readings(row)[joint] - 0.5).abs() < 0.8);
     let is_outside =
@@ -46,7 +47,7 @@ fn folder() -> Folder {
     write("other.csv", rest, true);
     write("other_outside.csv", &outside, true);
     write_nominal(&folder, &model.robot, rest.iter().map(|&row| made.data.readings(row)));
-    folder.done("calibrate robot.urdf fit.csv --sigma-position 0.05mm");
+    folder.run_to_success("calibrate robot.urdf fit.csv --sigma-position 0.05mm");
     folder
 }
 

@@ -4,11 +4,11 @@
 //! languages here: `poecal-programs` has them.
 
 mod engine;
-mod fate;
-mod place;
+mod pose_compensation;
+mod program_text;
 mod reasons;
 mod summary;
-mod written;
+mod target_outcomes;
 
 use std::path::Path;
 
@@ -16,12 +16,12 @@ use super::ChangeOptions;
 use engine::Engine;
 use poecal_model::robot::{Controller, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_programs::axes::Axes;
-use poecal_programs::parsed::Meant;
-use poecal_programs::{Given, Language, parse};
+use poecal_programs::axes::ControllerAxes;
+use poecal_programs::parsed_program::PoseMeaning;
+use poecal_programs::{Language, StatedFrames, parse};
 use poecal_results::programs::read_program;
 
-pub use place::PoseCompensation;
+pub use pose_compensation::PoseCompensation;
 pub use summary::ProgramSummary;
 
 /// Options of the compensation of programs.
@@ -30,7 +30,7 @@ pub struct ProgramOptions {
     /// The language.
     pub language: Language,
     /// Tools and frames that the program does not state.
-    pub given: Given,
+    pub given: StatedFrames,
     /// True if the remaining error is recomputed from the written text by the robots' own forward kinematics.
     pub check: bool,
     /// Limits of the changes of readings.
@@ -49,7 +49,7 @@ impl ProgramOptions {
     pub fn new(language: Language) -> Self {
         ProgramOptions {
             language,
-            given: Given::default(),
+            given: StatedFrames::default(),
             check: false,
             change: ChangeOptions::default(),
             each: false,
@@ -72,10 +72,10 @@ pub fn compensate_program(
     options: &ProgramOptions,
 ) -> Result<(Vec<u8>, ProgramSummary)> {
     let counting = options.controller.as_ref().filter(|it| !it.is_plain());
-    let counting = counting.map(Controller::counting).transpose()?;
+    let counting = counting.map(Controller::controller_map).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
     engine.counting = counting;
-    let axes = Axes::from_robot(nominal);
+    let axes = ControllerAxes::from_robot(nominal);
     if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
         return ErrorKind::Option.refuse(format!(
             "found {} readings as the start, expected one of each joint: {}",
@@ -84,7 +84,7 @@ pub fn compensate_program(
         ));
     }
     let parsed = parse(options.language, text, &options.given, &axes)?;
-    let joints = parsed.targets.iter().find(|it| it.meant == Meant::Joints);
+    let joints = parsed.targets.iter().find(|it| it.meant == PoseMeaning::Joints);
     if let (Language::Fanuc, true, Some(target)) = (options.language, options.is_third_axis_open, joints) {
         return Err(ErrorKind::Option.error("found a joint target, and a calibration whose rows do not show from where the third axis counts, expected \
                        `--third-axis level` where J3 counts from the level, as controllers of FANUC do by themselves, or `--third-axis arm`").at_line("", target.line));
@@ -94,7 +94,7 @@ pub fn compensate_program(
     if options.check {
         let again = parse(options.language, &made.text, &options.given, &axes)?;
         made.summary.checked =
-            Some(summary::checked(&engine, (nominal, actual), factors, &again, &made.meant));
+            Some(summary::check_written(&engine, (nominal, actual), factors, &again, &made.meant));
     }
     let corrected = made.meant.len();
     let summary = ProgramSummary { language: options.language, corrected, changes: made.summary };

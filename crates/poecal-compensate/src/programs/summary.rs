@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::super::{Checked, Summary};
+use super::super::{CompensationSummary, ForwardCheck};
 use super::engine::Engine;
 use poecal_arm::lie::Pose;
 use poecal_model::robot::Robot;
 use poecal_programs::Language;
-use poecal_programs::parsed::{Meant, Parsed};
+use poecal_programs::parsed_program::{ParsedProgram, PoseMeaning};
 
 /// Changes of a program by compensation, and unchanged targets.
 #[derive(Clone, Debug, Serialize)]
@@ -18,7 +18,7 @@ pub struct ProgramSummary {
     pub corrected: usize,
     /// Corrections, the remaining error of corrected targets, and unchanged targets.
     #[serde(flatten)]
-    pub changes: Summary,
+    pub changes: CompensationSummary,
 }
 
 impl ProgramSummary {
@@ -36,37 +36,37 @@ impl ProgramSummary {
 }
 
 /// Remaining error of a written program, by the robots' own forward kinematics.
-pub(crate) fn checked(
+pub(crate) fn check_written(
     engine: &Engine<'_>,
     (nominal, actual): (&Robot, &Robot),
     factors: &[f64],
-    written: &Parsed,
+    written: &ParsedProgram,
     meant: &[(usize, Vec<f64>)],
-) -> Checked {
+) -> ForwardCheck {
     let mut places: Vec<Option<(Pose, Pose)>> = vec![None; written.targets.len()];
     for motion in &written.motions {
         if let (Some(place), Some(known)) = (places.get_mut(motion.target), motion.tool.zip(motion.frame)) {
             *place = Some(known);
         }
     }
-    let mut largest = Checked::default();
+    let mut largest = ForwardCheck::default();
     for (index, q) in meant {
         let Some(target) = written.targets.get(*index) else { continue };
-        let numbers = target.scaled();
+        let numbers = target.scaled_numbers();
         let wanted = nominal.forward_kinematics(q);
         let mut commanded = match target.meant {
-            Meant::Joints => engine.readings(numbers),
-            Meant::Pose(form) => {
+            PoseMeaning::Joints => engine.readings(numbers),
+            PoseMeaning::Pose(form) => {
                 let place = places.get(*index).copied().flatten();
                 let (Some(new), Some(place)) = (form.of_first(&numbers), place) else { continue };
-                let poses = engine.at(q);
+                let poses = engine.compensation_at(q);
                 poses.of_robot(&engine.commanded_by(poses, &new, place, q), q)
             }
         };
-        let share = engine.at(q).compensation().share_of_most(q, &commanded);
+        let share = engine.compensation_at(q).compensation().share_of_most(q, &commanded);
         largest.change.include(share, target.line);
         commanded.extend_from_slice(factors);
-        largest.include(actual.forward_kinematics(&commanded).apart(&wanted), target.line);
+        largest.include(actual.forward_kinematics(&commanded).distance_and_angle(&wanted), target.line);
     }
     largest
 }

@@ -6,7 +6,9 @@ use nalgebra::Vector3;
 use poecal_arm::lie::rotation;
 use poecal_arm::{AllBranches, Arm};
 use poecal_compensate::Kinematics;
-use poecal_model::robot::{Body, FactorReading, Gives, Gravity, JointTerm, Mass, Robot, Term, TermKind};
+use poecal_model::robot::{
+    Body, CompliantDirections, FactorReading, Gravity, JointTerm, Mass, Robot, Term, TermKind,
+};
 use poecal_model::simulate;
 
 use poecal_model::simulate::random;
@@ -17,14 +19,14 @@ use crate::two_arms::both_hands;
 use poecal_testing::sessions::lifting_robot;
 
 /// A number between -1 and 1.
-fn one(numbers: &mut ChaCha8Rng) -> f64 {
-    2.0 * random::uniform(numbers) - 1.0
+fn draw_number(numbers: &mut ChaCha8Rng) -> f64 {
+    2.0 * random::uniform_number(numbers) - 1.0
 }
 
 /// A robot whose joints and links deflect in every modelled direction, by up to `size` rad (and m/3).
-fn bent(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
+fn with_compliance_everywhere(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
     let all: Vec<usize> = (0..robot.joints.len()).collect();
-    let (mut robot, _) = robot.giving(&all, Gives::All);
+    let (mut robot, _) = robot.with_compliance(&all, CompliantDirections::All);
     robot.factors =
         vec![FactorReading { name: "temperature".into(), reference: 20.0 }, FactorReading::new("payload")];
     robot.gravity = Some(Gravity::of_unit_weights(&robot, Vector3::new(0.1, 0.2, -1.0)));
@@ -34,20 +36,20 @@ fn bent(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
         .into();
     let weights = robot.gravity.as_ref().unwrap().weights.len();
     for joint in 0..robot.joints.len() {
-        let mut terms = vec![Term::OFFSET, Term::RATIO, TermKind::Masses.numbered(0)];
-        terms.push(TermKind::Factor.at(0));
-        terms.push(TermKind::Payload.at(1));
-        terms.push(TermKind::Coupled.at((joint + 7) % robot.joints.len()));
-        terms.extend((0..weights).map(|weight| TermKind::Sag.at(weight)));
+        let mut terms = vec![Term::OFFSET, Term::RATIO, TermKind::Masses.with_number(0)];
+        terms.push(TermKind::Factor.with_index(0));
+        terms.push(TermKind::Payload.with_index(1));
+        terms.push(TermKind::Coupled.with_index((joint + 7) % robot.joints.len()));
+        terms.extend((0..weights).map(|weight| TermKind::Sag.with_index(weight)));
         for order in [1, 2] {
-            terms.extend([TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order)));
+            terms.extend([TermKind::Sine, TermKind::Cosine].map(|it| it.with_number(order)));
         }
         let slides = robot.joints[joint].kind == poecal_model::robot::JointKind::Prismatic;
         let share = if slides { size / 3.0 } else { size } / terms.len() as f64;
         robot.terms.extend(terms.into_iter().map(|term| JointTerm {
             joint,
             term,
-            coefficient: share * one(numbers),
+            coefficient: share * draw_number(numbers),
         }));
     }
     robot
@@ -59,13 +61,13 @@ fn an_arm_is_where_its_robot_is() {
     for (name, robot) in
         [("elbow", simulate::elbow()), ("with a lift", lifting_robot()), ("torso", both_hands("base_link"))]
     {
-        let robot = bent(&robot, 0.02, &mut numbers);
+        let robot = with_compliance_everywhere(&robot, 0.02, &mut numbers);
         let factors = [26.0, 1.5];
         let (arm, readings) = robot.arm(&factors).unwrap();
         let names = robot.reading_names();
         let mut worst = 0.0_f64;
         for _ in 0..200 {
-            let q: Vec<f64> = readings.iter().map(|_| PI * one(&mut numbers)).collect();
+            let q: Vec<f64> = readings.iter().map(|_| PI * draw_number(&mut numbers)).collect();
             let mut all = vec![0.0; names.len()];
             readings.iter().zip(&q).for_each(|(&at, q)| all[at] = *q);
             let count = all.len();
@@ -82,18 +84,18 @@ fn an_arm_is_where_its_robot_is() {
 #[test]
 fn branches_of_a_bent_arm_reach_the_pose() {
     let mut numbers = ChaCha8Rng::seed_from_u64(12);
-    let robot = bent(&simulate::elbow(), 0.005, &mut numbers);
+    let robot = with_compliance_everywhere(&simulate::elbow(), 0.005, &mut numbers);
     let (arm, _): (Arm, _) = robot.arm(&[20.0, 2.0]).unwrap();
     let all = AllBranches::new(&arm).unwrap();
     let (mut worst, mut branches, mut own, mut count) = (0.0_f64, 0, 0, 0);
     for _ in 0..500 {
-        let q = [0; 6].map(|_| PI * one(&mut numbers));
+        let q = [0; 6].map(|_| PI * draw_number(&mut numbers));
         if arm.smallest_singular_value(&q) < 0.01 {
             continue;
         }
         count += 1;
         let target = arm.forward_kinematics(&q);
-        let found = all.at(&target);
+        let found = all.branches_at(&target);
         for branch in found.as_slice() {
             let there = arm.forward_kinematics(branch);
             worst = worst.max((there.translation - target.translation).norm());
@@ -110,8 +112,8 @@ fn branches_of_a_bent_arm_reach_the_pose() {
 }
 
 /// Readings of this many configurations, one after the other.
-fn many(rows: usize, width: usize, numbers: &mut ChaCha8Rng) -> Vec<f64> {
-    (0..rows * width).map(|_| PI * one(numbers)).collect()
+fn draw_rows(rows: usize, width: usize, numbers: &mut ChaCha8Rng) -> Vec<f64> {
+    (0..rows * width).map(|_| PI * draw_number(numbers)).collect()
 }
 
 #[test]
@@ -122,14 +124,18 @@ fn many_configurations_are_what_each_is_alone() {
     {
         for size in [0.0, 0.02, 0.4] {
             let factors = [26.0, 1.5];
-            let robot = if size == 0.0 { robot.clone() } else { bent(&robot, size, &mut numbers) };
+            let robot = if size == 0.0 {
+                robot.clone()
+            } else {
+                with_compliance_everywhere(&robot, size, &mut numbers)
+            };
             let (arm, own) = robot.arm(&factors).unwrap();
             let kinematics = Kinematics::new(&robot, &factors).unwrap();
             let width = robot.joint_reading_names().len();
             let (mut worst, mut equal, mut rows) = (0.0_f64, 0, 0);
             // Also counts that eight does not divide, and more than a thread takes at a time.
             for count in [0, 1, 7, 8, 13, 1100] {
-                let readings = many(count, width, &mut numbers);
+                let readings = draw_rows(count, width, &mut numbers);
                 let tips = kinematics.forward_kinematics(&readings);
                 let jacobians = kinematics.jacobians(&readings);
                 assert_eq!((tips.len(), jacobians.len()), (count, 6 * width * count));
@@ -161,10 +167,10 @@ fn jacobians_are_the_differences_of_poses() {
     for (name, robot) in
         [("elbow", simulate::elbow()), ("with a lift", lifting_robot()), ("torso", both_hands("base_link"))]
     {
-        let robot = bent(&robot, 0.1, &mut numbers);
+        let robot = with_compliance_everywhere(&robot, 0.1, &mut numbers);
         let kinematics = Kinematics::new(&robot, &[26.0, 1.5]).unwrap();
         let width = robot.joint_reading_names().len();
-        let readings = many(50, width, &mut numbers);
+        let readings = draw_rows(50, width, &mut numbers);
         let jacobians = kinematics.jacobians(&readings);
         let (mut worst, mut of_weights) = (0.0_f64, 0.0_f64);
         let mut unloaded = robot.clone();
@@ -201,12 +207,12 @@ fn sag_is_what_the_terms_of_weights_do() {
     for (name, robot) in
         [("elbow", simulate::elbow()), ("with a lift", lifting_robot()), ("torso", both_hands("base_link"))]
     {
-        let robot = bent(&robot, 0.02, &mut numbers);
+        let robot = with_compliance_everywhere(&robot, 0.02, &mut numbers);
         let factors = [26.0, 1.5];
         let mut unloaded = robot.clone();
         unloaded.terms.retain(|it| !it.term.needs_gravity());
         let width = robot.joint_reading_names().len();
-        let mut readings = many(100, width, &mut numbers);
+        let mut readings = draw_rows(100, width, &mut numbers);
         // Joints of other branches are at zero for an arm.
         let (_, own) = robot.arm(&factors).unwrap();
         readings

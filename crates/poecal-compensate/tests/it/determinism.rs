@@ -4,10 +4,10 @@ use poecal_compensate::{ChangeOptions, Compensation, Inverse, Kinematics};
 use poecal_model::robot::{JointTerm, Term};
 
 use poecal_calibrate::{CalibrationOptions, calibrate};
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::residuals::{ResidualRows, Residuals};
 use poecal_testing::sessions::with_threads;
-use poecal_testing::trials::some;
+use poecal_testing::trials::choose_some;
 
 /// Few rows; and enough of them for a fit, which holds out three tenths, to start on a sample and to sort and sum the rows in several parts.
 const ROWS: [usize; 2] = [200, 12_000];
@@ -15,7 +15,7 @@ const ROWS: [usize; 2] = [200, 12_000];
 #[test]
 fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
     for count in ROWS {
-        for kind in some([Kind::MIXED, Kind::POSE, Kind::POINT]) {
+        for kind in choose_some([SessionKind::MIXED, SessionKind::POSE, SessionKind::POINT]) {
             let made = Simulation { count, ..Simulation::default() }.run(&elbow(), kind).unwrap();
             // The debugging form writes every number so that it reads back to the same bits.
             let results = |threads: usize| {
@@ -24,7 +24,9 @@ fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
                     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                     let mut rows = Vec::new();
                     ResidualRows::Of(&made.data, &calibration).write_to(&mut rows).unwrap();
-                    assert!(rows == Residuals::from_calibration(&made.data, &calibration).text().into_bytes());
+                    assert!(
+                        rows == Residuals::from_calibration(&made.data, &calibration).text().into_bytes()
+                    );
                     (format!("{calibration:?}"), rows)
                 })
             };
@@ -48,8 +50,9 @@ fn kinematics_do_not_depend_on_threads() {
             let (tips, jacobians) =
                 (kinematics.forward_kinematics(&readings), kinematics.jacobians(&readings));
             let inverse = Inverse::new(&actual, &[]).unwrap();
-            let near = inverse
-                .of_many(&tips[..300], |it, row, tip| it.nearest(tip, &readings[6 * row..][..6], false));
+            let near = inverse.of_many(&tips[..300], |it, row, tip| {
+                it.solve_nearest(tip, &readings[6 * row..][..6], false)
+            });
             let compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
             (tips, jacobians, near, compensation.of_many(&readings, false).0)
         })

@@ -6,7 +6,7 @@ use poecal_compensate::{Language, ProgramOptions, compensate_program};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_import::{Join, ReadOptions, parse, read};
 use poecal_model::robot::{Joint, Robot};
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_testing::files::Folder;
 use poecal_testing::sessions::lifting_robot;
 
@@ -36,18 +36,18 @@ fn a_base_that_fixed_joints_join_to_the_chain_is_its_base() {
         let base = parse_urdf(BESIDE, "base", tip);
         assert_eq!(base.robot().base_name, "base");
         let (metres, radians) =
-            (base_link_from_base * base.robot().forward_kinematics(&q)).apart(&in_base_link);
+            (base_link_from_base * base.robot().forward_kinematics(&q)).distance_and_angle(&in_base_link);
         println!("apart by {metres:.1e} m, {radians:.1e} rad");
         assert!(metres < 1e-15 && radians < 1e-15);
         // A calibration in this base is written into the joints below the other one, and read again.
         let shift = Pose::from_xyz_rpy([1e-3, -2e-3, 5e-4], [1e-3, 2e-3, -1e-3]);
         let screws: Vec<Screw> =
-            base.robot().joints.iter().map(|joint| joint.screw.transformed(&shift)).collect();
+            base.robot().joints.iter().map(|joint| joint.screw.transform(&shift)).collect();
         let calibrated = base.robot().with_screws(&screws);
-        let patched = base.patched(&calibrated).unwrap();
+        let patched = base.patch(&calibrated).unwrap();
         let again = UrdfDocument::parse(&patched.text, "arm.urdf", &patched.selection).unwrap();
         let (metres, radians) =
-            again.robot().forward_kinematics(&q).apart(&calibrated.forward_kinematics(&q));
+            again.robot().forward_kinematics(&q).distance_and_angle(&calibrated.forward_kinematics(&q));
         println!("written and read: {metres:.1e} m, {radians:.1e} rad");
         assert!(metres < 1e-14 && radians < 1e-14 && patched.text.contains("xyz=\"0.1 0 -0.05\""));
     }
@@ -85,8 +85,8 @@ fn an_instrument_on_a_base_beside_the_chain_is_where_it_is() {
     };
     let robot = document.robot();
     let camera = robot.base_from(&robot.instruments[0]);
-    assert!(camera.apart(&Pose::identity()).0 < 1e-15);
-    let patched = document.patched(robot).unwrap();
+    assert!(camera.distance_and_angle(&Pose::identity()).0 < 1e-15);
+    let patched = document.patch(robot).unwrap();
     assert_eq!(patched.text, BESIDE);
 }
 
@@ -154,7 +154,7 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
         error_position_m: 0.2e-3,
         ..Simulation::default()
     };
-    let actual = simulation.run(&nominal, Kind::POSE).unwrap().actual;
+    let actual = simulation.run(&nominal, SessionKind::POSE).unwrap().actual;
     let degrees = [10.0, 20.0, -15.0, 40.0, 50.0, 60.0];
     let at = |track_m: f64, by: f64| {
         let mut q = vec![track_m];

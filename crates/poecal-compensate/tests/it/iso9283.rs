@@ -6,10 +6,10 @@ use poecal_calibrate::{FigureName, TestLabels, TestRow, calibrate, iso9283};
 use poecal_compensate::Inverse;
 use poecal_model::robot::{Robot, Sizes, TermGroup};
 use poecal_model::simulate::random::{normal, normal_vector};
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::model::{Model, ModelSource};
-use poecal_results::predictions::{PredictionFrame, default_target, predicted};
+use poecal_results::predictions::{PredictionFrame, default_target, predict_readings};
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -41,7 +41,7 @@ fn accuracies(seed: u64) -> [f64; 3] {
     let mut terms = Sizes::NONE;
     terms[TermGroup::Harmonics] = 1e-4;
     let simulation = Simulation { count: 60, seed, terms, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::POINT).unwrap();
+    let made = simulation.run(&elbow(), SessionKind::POINT).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let calibrated = file.robot().unwrap();
@@ -50,7 +50,7 @@ fn accuracies(seed: u64) -> [f64; 3] {
         Model { robot: robot.clone(), source, path: "calibration.json".into() }
     };
     let inverse = |robot: &Robot, wanted: &Pose, near: &[f64]| {
-        Inverse::new(robot, &[]).unwrap().nearest(wanted, near, false).unwrap()
+        Inverse::new(robot, &[]).unwrap().solve_nearest(wanted, near, false).unwrap()
     };
     let middle = [0.3, 0.2, -0.3, 0.2, 0.6, 0.1];
     let before: Vec<Vec<f64>> = commands().iter().map(|it| inverse(&made.nominal, it, &middle)).collect();
@@ -59,7 +59,7 @@ fn accuracies(seed: u64) -> [f64; 3] {
     let places = |robot: &Robot| {
         let model = model(robot);
         let target = default_target(&model, PredictionFrame::Base, true).unwrap();
-        predicted(&model, &before.concat(), PredictionFrame::Base, target, false).unwrap().poses
+        predict_readings(&model, &before.concat(), PredictionFrame::Base, target, false).unwrap().poses
     };
     let (wanted, by_calibration) = (places(&file.nominal_robot().unwrap()), places(&calibrated));
     let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -3,10 +3,10 @@
 
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::{CalibrationOptions, Corrections, calibrate};
-use poecal_compensate::{ChangeOptions, Compensation, MostChange, Outcome};
+use poecal_compensate::{ChangeOptions, Compensation, CorrectionOutcome, MaxCorrection};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::random::uniform;
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::random::uniform_number;
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
@@ -136,7 +136,7 @@ fn arms(count: usize) -> Vec<(String, Robot, Vec<[f64; 6]>)> {
         let mut generator = ChaCha8Rng::seed_from_u64(at as u64);
         let factors: [f64; 3] = core::array::from_fn(|_| match at < ARMS.len() {
             true => 1.0,
-            false => 0.7 + 0.6 * uniform(&mut generator),
+            false => 0.7 + 0.6 * uniform_number(&mut generator),
         });
         let scale = |point: &[f64; 3]| core::array::from_fn(|axis| factors[axis] * point[axis]);
         let axes = core::array::from_fn(|joint| (axes[joint].0, scale(&axes[joint].1)));
@@ -147,7 +147,7 @@ fn arms(count: usize) -> Vec<(String, Robot, Vec<[f64; 6]>)> {
 }
 
 /// The compensation of a calibrated session: the nominal robot as taught, and the calibrated one.
-fn calibrated(nominal: &Robot, seed: u64) -> Compensation {
+fn calibrate_compensation(nominal: &Robot, seed: u64) -> Compensation {
     let simulation = Simulation {
         count: 60,
         error_rotation_rad: 0.05_f64.to_radians(),
@@ -157,18 +157,18 @@ fn calibrated(nominal: &Robot, seed: u64) -> Compensation {
         seed,
         ..Simulation::default()
     };
-    let made = simulation.run(nominal, Kind::POSE).unwrap();
+    let made = simulation.run(nominal, SessionKind::POSE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
     let calibration = calibrate(nominal, &made.data, &options).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let actual = file.robot().unwrap();
-    let taught = file.taught(&actual).unwrap().robot;
+    let taught = file.taught_robot(&actual).unwrap().robot;
     Compensation::new(&taught, &actual, &[], &ChangeOptions::default()).unwrap()
 }
 
 /// True if a turn of a joint by up to `degrees` moves the arm through a singularity.
 fn is_near_singular(compensation: &Compensation, q: &[f64], degrees: f64) -> bool {
-    let arm = compensation.nominal();
+    let arm = compensation.nominal_arm();
     let hand = arm.handedness(q);
     hand == 0.0
         || (1..5).any(|joint| {
@@ -212,16 +212,16 @@ impl Counted {
                 before = None;
                 continue;
             }
-            assert!(outcome == Outcome::Turned || left_rad < 1e-9);
+            assert!(outcome == CorrectionOutcome::Turned || left_rad < 1e-9);
             // Arms like these usually have errors of 0.1 deg, the worst of them twice that in the median.
             assert!(
                 left_rad <= turned_rad.max(1f64.to_radians()),
                 "much farther off than without correction"
             );
             // The arm itself confirms it.
-            let apart = compensation.actual().forward_kinematics(&readings);
-            let target = compensation.nominal().forward_kinematics(q);
-            let (metres, _) = apart.apart(&target);
+            let apart = compensation.actual_arm().forward_kinematics(&readings);
+            let target = compensation.nominal_arm().forward_kinematics(q);
+            let (metres, _) = apart.distance_and_angle(&target);
             self.worst.0 = self.worst.0.max(left_m).max(metres);
             self.worst.1 = self.worst.1.max(left_rad);
             self.worst.2 = self.worst.2.max(compensation.share_of_most(q, &readings));
@@ -246,7 +246,7 @@ fn no_row_is_sent_to_another_branch() {
     for (at, (name, nominal, homes)) in arms(count).into_iter().enumerate() {
         let mut counted = Counted::default();
         for seed in trials(8).seeds() {
-            let mut compensation = calibrated(&nominal, 100 * at as u64 + seed);
+            let mut compensation = calibrate_compensation(&nominal, 100 * at as u64 + seed);
             for home in &homes {
                 counted.way(&mut compensation, &[home.map(f64::to_radians)], true);
             }
@@ -303,20 +303,20 @@ fn a_straight_wrist_stays_straight() {
     let nominal = arm(&ARMS[0].1);
     let simulation =
         Simulation { count: 1, error_rotation_rad: 1e-3, error_position_m: 3e-4, ..Simulation::default() };
-    let actual = simulation.run(&nominal, Kind::POSE).unwrap().actual;
+    let actual = simulation.run(&nominal, SessionKind::POSE).unwrap().actual;
     let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
     let found = compensation.joints(&[0.0; 6]);
     let changes: Vec<f64> = found.readings.iter().map(|it| it.to_degrees()).collect();
     println!("{:?}: {changes:.3?} deg, {:.3} deg left", found.outcome, found.left_rad.to_degrees());
     assert!(found.is_corrected && found.left_m < 1e-9);
     // No larger change is allowed: the list then names the joint.
-    let most = MostChange { turning_rad: 1e-5, sliding_m: 1e-3 };
+    let most = MaxCorrection { turning_rad: 1e-5, sliding_m: 1e-3 };
     let options = ChangeOptions { most_change: most, nearest: false };
     let mut narrow = Compensation::new(&nominal, &actual, &[], &options).unwrap();
     let found = narrow.joints(&[0.3, 0.2, 0.4, 0.5, 0.6, 0.7]);
     let (outcome, left, is_corrected) = (found.outcome, (found.left_m, found.left_rad), found.is_corrected);
     let reason = narrow.reason(outcome, left);
     println!("{reason}");
-    assert!(!is_corrected && matches!(outcome, Outcome::TooFar(..)));
+    assert!(!is_corrected && matches!(outcome, CorrectionOutcome::TooFar(..)));
     assert!(reason.contains("deg beyond its zero, where 0.001 deg are allowed"));
 }

@@ -2,16 +2,20 @@
 
 use poecal_arm::lie::Pose;
 use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, calibrate};
-use poecal_compensate::{ChangeOptions, Compensation, MostChange};
+use poecal_compensate::{ChangeOptions, Compensation, MaxCorrection};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 
 /// A reflector, metres beyond the flange.
 const REFLECTOR: [f64; 3] = [0.04, -0.02, 0.1];
 
 /// A calibration of an elbow with axis errors of this size (rad, m), with a model that ends at the flange.
-fn calibrated(off: (f64, f64), kind: Kind, frame: DeviceFrameKnowledge) -> (CalibrationFile, Robot) {
+fn calibrate_elbow(
+    off: (f64, f64),
+    kind: SessionKind,
+    frame: DeviceFrameKnowledge,
+) -> (CalibrationFile, Robot) {
     let simulation = Simulation {
         count: 80,
         error_rotation_rad: off.0,
@@ -50,7 +54,7 @@ fn configurations() -> impl Iterator<Item = [f64; 6]> {
 /// of the tip, metres.
 fn corrections(nominal: &Robot, actual: &Robot, meant: impl Fn(&Robot, &[f64]) -> Pose) -> (f64, f64) {
     // No limit of changes.
-    let most_change = MostChange { turning_rad: 1.5, sliding_m: 1.0 };
+    let most_change = MaxCorrection { turning_rad: 1.5, sliding_m: 1.0 };
     let options = ChangeOptions { most_change, nearest: false };
     let mut compensation = Compensation::new(nominal, actual, &[], &options).unwrap();
     let (mut largest, mut left) = (Vec::new(), 0.0_f64);
@@ -67,10 +71,10 @@ fn corrections(nominal: &Robot, actual: &Robot, meant: impl Fn(&Robot, &[f64]) -
 
 #[test]
 fn a_reflector_off_the_flange_is_no_error_of_the_joints() {
-    for kind in [Kind::POSE, Kind::POINT] {
+    for kind in [SessionKind::POSE, SessionKind::POINT] {
         for frame in [DeviceFrameKnowledge::Base, DeviceFrameKnowledge::Unknown] {
-            let (file, actual) = calibrated((0.0, 0.0), kind, frame);
-            let taught = file.taught(&actual).unwrap();
+            let (file, actual) = calibrate_elbow((0.0, 0.0), kind, frame);
+            let taught = file.taught_robot(&actual).unwrap();
             let (largest, left) = corrections(&taught.robot, &actual, |robot, q| robot.forward_kinematics(q));
             let (literal, _) =
                 corrections(&file.nominal_robot().unwrap(), &actual, |robot, q| robot.forward_kinematics(q));
@@ -87,8 +91,8 @@ fn a_reflector_off_the_flange_is_no_error_of_the_joints() {
 #[test]
 fn corrected_programs_reach_what_base_and_tool_of_the_actual_robot_make_of_them() {
     for frame in [DeviceFrameKnowledge::Base, DeviceFrameKnowledge::Unknown] {
-        let (file, actual) = calibrated((0.01, 2e-3), Kind::POSE, frame);
-        let taught = file.taught(&actual).unwrap();
+        let (file, actual) = calibrate_elbow((0.01, 2e-3), SessionKind::POSE, frame);
+        let taught = file.taught_robot(&actual).unwrap();
         let nominal = file.nominal_robot().unwrap();
         let by_frames = |_: &Robot, q: &[f64]| taught.base * nominal.forward_kinematics(q) * taught.tool;
         let (largest, left) = corrections(&taught.robot, &actual, by_frames);

@@ -1,13 +1,13 @@
 //! A torso with two arms, seen by a device beside it, by one hand that sees the other, and by planes that both hands touch: ranks in closed form,
 //! recovery without noise, and held-out figures with it (theory.md §7).
 
-use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, Robust, calibrate};
-use poecal_fit::state::{Packed, Session};
+use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, RobustLoss, calibrate};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_model::measurement::{Dataset, Observation, Quantity};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation};
-use poecal_testing::largest::larger;
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult};
+use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions::geometry;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
@@ -42,7 +42,7 @@ fn hand_to_hand() -> Robot {
     robot("base_link", &[("eye", "left_hand")], &[("ball", "right_hand")])
 }
 
-fn exact(count: usize) -> Simulation {
+fn exact_simulation(count: usize) -> Simulation {
     Simulation {
         noise_position_m: 0.0,
         noise_rotation_rad: 0.0,
@@ -53,13 +53,13 @@ fn exact(count: usize) -> Simulation {
     }
 }
 
-fn fit(made: &Simulated) -> Calibration {
-    let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
+fn fit(made: &SimulationResult) -> Calibration {
+    let options = CalibrationOptions { robust: RobustLoss::Off, ..geometry() };
     calibrate(&made.nominal, &made.data, &options).unwrap()
 }
 
 /// A session with only the first stations, in their order.
-fn of_places(made: Simulated, count: usize) -> Simulated {
+fn of_places(made: SimulationResult, count: usize) -> SimulationResult {
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for (row, observation) in made.data.observations.iter().enumerate() {
         if observation.station >= count {
@@ -70,14 +70,14 @@ fn of_places(made: Simulated, count: usize) -> Simulated {
         let own = Observation { target, station, ..*observation };
         data.push_observation(made.data.readings(row), own).unwrap();
     }
-    Simulated { data, ..made }
+    SimulationResult { data, ..made }
 }
 
 /// Rank and recovery of a session without noise.
-fn check(name: &str, made: &Simulated, rank: usize, unknowns: usize) {
+fn check(name: &str, made: &SimulationResult, rank: usize, unknowns: usize) {
     let found = fit(made);
     let (identified, held_out) = (&found.identifiability, found.accuracy.held_out.as_ref().unwrap());
-    let worst = held_out.calibrated.iter().map(|(_, it)| it.max).fold(0.0, larger);
+    let worst = held_out.calibrated.iter().map(|(_, it)| it.max).fold(0.0, larger_or_nan);
     println!(
         "{name}: rank {} of {}, expected {rank} of {unknowns}; held out {worst:.1e} mm or degrees",
         identified.rank, identified.parameters
@@ -90,8 +90,8 @@ fn check(name: &str, made: &Simulated, rank: usize, unknowns: usize) {
 /// All joints between device and hands are observed: g and 6 for each pose target, 3 for each point, 6 for the device less 6 for the base.
 #[test]
 fn a_device_beside_the_torso_sees_both_hands() {
-    for (kind, of_target) in [(Kind::POSE, 6), (Kind::POINT, 3)] {
-        let made = exact(200).run(&both_hands("base_link"), kind).unwrap();
+    for (kind, of_target) in [(SessionKind::POSE, 6), (SessionKind::POINT, 3)] {
+        let made = exact_simulation(200).run(&both_hands("base_link"), kind).unwrap();
         let rank = TORSO + ARMS + 2 * of_target;
         check(&format!("device, {}s of both hands", kind.word()), &made, rank, rank);
     }
@@ -101,25 +101,27 @@ fn a_device_beside_the_torso_sees_both_hands() {
 /// base, and an anchor shows 3 of its 6 numbers.
 #[test]
 fn the_left_hand_sees_the_right() {
-    let places = [(Kind::POSE, 6), (Kind::POINT, 3), (Kind::DISTANCE, 0)];
+    let places = [(SessionKind::POSE, 6), (SessionKind::POINT, 3), (SessionKind::DISTANCE, 0)];
     for (kind, more) in places {
-        let made = exact(if kind == Kind::DISTANCE { 300 } else { 160 }).run(&hand_to_hand(), kind).unwrap();
+        let made = exact_simulation(if kind == SessionKind::DISTANCE { 300 } else { 160 })
+            .run(&hand_to_hand(), kind)
+            .unwrap();
         assert!(made.data.stations == [Some("eye".to_owned())], "{:?}", made.data.stations);
         check(&format!("hand to hand, {}s", kind.word()), &made, ARMS + more, TORSO + ARMS + more);
     }
 }
 
 /// A session of both hands on six planes, three through one point and three through another.
-fn on_six_planes(count: usize) -> Simulated {
-    let first = exact(count).run(&both_hands("torso"), Kind::PLANE).unwrap();
+fn on_six_planes(count: usize) -> SimulationResult {
+    let first = exact_simulation(count).run(&both_hands("torso"), SessionKind::PLANE).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(9);
-    let other = Simulation { seed: 2, ..exact(count) };
+    let other = Simulation { seed: 2, ..exact_simulation(count) };
     let actual = first.actual.clone();
-    let mut more = other.measure(&first.nominal, actual, Kind::PLANE, &mut generator).unwrap().data;
+    let mut more = other.measure(&first.nominal, actual, SessionKind::PLANE, &mut generator).unwrap().data;
     more.stations.iter_mut().flatten().for_each(|name| *name = format!("second {name}"));
     let mut data = first.data.clone();
     data.extend(&more).unwrap();
-    Simulated { data, ..first }
+    SimulationResult { data, ..first }
 }
 
 /// Points of both hands on planes. An arm that shares no joint with the other may be moved, turned and scaled by itself in any motion that keeps all
@@ -141,7 +143,8 @@ fn planes_that_both_hands_touch() {
 fn a_torso_that_moves_ties_both_arms_together() {
     for (base, own, lacking) in [("torso_lift", 4, [2, 1, 1]), ("base_link", TORSO, [2, 1, 0])] {
         for (planes, lacks) in (1..).zip(lacking) {
-            let made = of_places(exact(450).run(&both_hands(base), Kind::PLANE).unwrap(), planes);
+            let made =
+                of_places(exact_simulation(450).run(&both_hands(base), SessionKind::PLANE).unwrap(), planes);
             let unknowns = own + ARMS + 6 + 3 * planes - 6;
             check(&format!("{base}, arms on {planes} planes"), &made, unknowns - lacks, unknowns);
         }
@@ -153,9 +156,9 @@ fn a_torso_that_moves_ties_both_arms_together() {
 fn with_noise_held_out_rows_are_as_good_as_the_noise() {
     let noisy = |count| Simulation { count, ..Simulation::default() };
     let sessions = [
-        ("device", both_hands("base_link"), Kind::POSE, 300, Quantity::Position, 3.0),
-        ("hand to hand", hand_to_hand(), Kind::DISTANCE, 600, Quantity::Distance, 1.0),
-        ("planes", both_hands("torso"), Kind::PLANE, 600, Quantity::Height, 1.0),
+        ("device", both_hands("base_link"), SessionKind::POSE, 300, Quantity::Position, 3.0),
+        ("hand to hand", hand_to_hand(), SessionKind::DISTANCE, 600, Quantity::Distance, 1.0),
+        ("planes", both_hands("torso"), SessionKind::PLANE, 600, Quantity::Height, 1.0),
     ];
     for (name, robot, kind, count, quantity, components) in sessions {
         let made = noisy(count).run(&robot, kind).unwrap();
@@ -189,7 +192,7 @@ fn of_left(chain: &Robot, data: &Dataset) -> Dataset {
 /// Error of the corrected model on other rows, metres (RMS).
 fn corrected_m(calibration: &Calibration, unseen: &Dataset, target: Option<&str>) -> f64 {
     let found = calibration.correction.as_ref().unwrap();
-    let packed = Packed::from_dataset(&found.model.robot, unseen);
+    let packed = PackedValues::from_dataset(&found.model.robot, unseen);
     let session = Session::new(&found.model.robot, unseen, &packed, true);
     let is_own = |row: &u32| unseen.targets[unseen.observations[*row as usize].target].as_deref() == target;
     let rows: Vec<u32> = unseen.all_rows().into_iter().filter(is_own).collect();
@@ -207,8 +210,8 @@ fn a_tree_of_two_soft_arms_has_half_the_error_of_a_chain() {
     let text = include_str!("../../../poecal-testing/data/torso.urdf");
     let chain = UrdfDocument::parse(text, "torso.urdf", &selection).unwrap().robot().clone();
     let drawn = Simulation { terms, count: 200, seed: 3, ..Simulation::default() };
-    let made = drawn.run(&tree, Kind::POINT).unwrap();
-    let unseen = drawn.held_out(&made, Kind::POINT, 100).unwrap();
+    let made = drawn.run(&tree, SessionKind::POINT).unwrap();
+    let unseen = drawn.held_out(&made, SessionKind::POINT, 100).unwrap();
     let options = CalibrationOptions::default();
     let whole = corrected_m(&calibrate(&tree, &made.data, &options).unwrap(), &unseen, Some("left"));
     let left = of_left(&chain, &made.data);

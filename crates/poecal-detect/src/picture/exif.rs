@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     /// A list of one entry, behind another, in either order of bytes.
-    fn written(is_little: bool, [tag, kind, count, value]: [u16; 4]) -> Vec<u8> {
+    fn write_entry(is_little: bool, [tag, kind, count, value]: [u16; 4]) -> Vec<u8> {
         let short = |it: u16| if is_little { it.to_le_bytes() } else { it.to_be_bytes() };
         let long = |it: u16| if is_little { [short(it), [0; 2]] } else { [[0; 2], short(it)] }.concat();
         let entry = |[tag, kind, count, value]: [u16; 4]| {
@@ -52,13 +52,13 @@ mod tests {
         for is_little in [false, true] {
             for value in 0..300 {
                 let expected = if (1..=8).contains(&value) { Some(value as u8) } else { None };
-                assert_eq!(orientation(&written(is_little, [0x112, 3, 1, value])), expected);
+                assert_eq!(orientation(&write_entry(is_little, [0x112, 3, 1, value])), expected);
             }
             // Other tags, types and counts.
             for other in [[0x113, 3, 1, 6], [0x112, 4, 1, 6], [0x112, 3, 2, 6]] {
-                assert_eq!(orientation(&written(is_little, other)), None);
+                assert_eq!(orientation(&write_entry(is_little, other)), None);
             }
-            let whole = written(is_little, [0x112, 3, 1, 6]);
+            let whole = write_entry(is_little, [0x112, 3, 1, 6]);
             for size in 0..whole.len() {
                 assert_eq!(orientation(&whole[..size]), None, "{size}");
             }

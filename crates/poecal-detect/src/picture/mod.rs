@@ -1,39 +1,39 @@
 //! Pictures in files.
 
-pub(crate) mod decoded;
+pub(crate) mod decoding;
 pub(crate) mod exif;
 pub(crate) mod preview;
 
 use std::fmt;
 use std::path::Path;
 
-use crate::decoded::{Decoded, Undecoded};
+use crate::decoding::{DecodeFailure, DecodedPicture};
 use crate::error::{Error, Result};
 use crate::gray::Gray;
 
 /// A picture of a file, in gray, upright by its EXIF data.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct GrayPicture {
     /// Its levels.
     pub gray: Gray,
     /// Rotation after reading: the axes of its camera then differ from those of the picture.
-    pub turned: Turned,
+    pub turned: PictureOrientation,
 }
 
 /// Rotation of a picture to upright.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Turned {
+pub struct PictureOrientation {
     /// Degrees clockwise: 0, 90, 180 or 270.
     pub degrees: u16,
     /// True if left and right were exchanged, before turning.
     pub mirrored: bool,
 }
 
-impl Turned {
+impl PictureOrientation {
     /// True if the picture was changed.
     #[must_use]
     pub fn is_turned(&self) -> bool {
-        *self != Turned::default()
+        *self != PictureOrientation::default()
     }
 
     /// Rotation by the orientation of EXIF, 1 to 8.
@@ -48,7 +48,7 @@ impl Turned {
             8 => (270, false),
             _ => (0, false),
         };
-        Turned { degrees, mirrored }
+        PictureOrientation { degrees, mirrored }
     }
 
     /// The picture after this rotation.
@@ -74,15 +74,15 @@ impl Turned {
     }
 }
 
-impl fmt::Display for Turned {
+impl fmt::Display for PictureOrientation {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Turned { degrees, mirrored } = self;
+        let PictureOrientation { degrees, mirrored } = self;
         let how = if *mirrored { "mirrored and turned" } else { "turned" };
         write!(formatter, "{how} by {degrees} degrees clockwise")
     }
 }
 
-impl Picture {
+impl GrayPicture {
     /// Reads a PNG or JPEG file of 8 or 16 bits, gray or colour.
     ///
     /// # Errors
@@ -91,7 +91,7 @@ impl Picture {
         let unread =
             |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
         let bytes = std::fs::read(path).map_err(|error| unread(&error))?;
-        Picture::decode(&bytes, path)
+        GrayPicture::decode(&bytes, path)
     }
 
     /// Decodes the bytes of such a file, of at most [`MOST_PIXELS`]; `path` is its name in messages.
@@ -99,28 +99,28 @@ impl Picture {
     /// # Errors
     /// If it is no such picture; the message contains its path.
     pub fn decode(bytes: &[u8], path: &Path) -> Result<Self> {
-        Picture::decode_up_to(bytes, path, MOST_PIXELS).map_err(|Undecodable { error, .. }| error)
+        GrayPicture::decode_up_to(bytes, path, MOST_PIXELS).map_err(|PictureError { error, .. }| error)
     }
 
     /// Decodes a picture of at most this number of pixels: a file that states more causes no allocation.
     ///
     /// # Errors
-    /// Those of [`Picture::decode`], with the size of a picture of more pixels.
+    /// Those of [`GrayPicture::decode`], with the size of a picture of more pixels.
     pub fn decode_up_to(
         bytes: &[u8],
         path: &Path,
         most_pixels: u64,
-    ) -> std::result::Result<Self, Undecodable> {
-        let no_picture = |reason: &dyn fmt::Display| Undecodable {
+    ) -> std::result::Result<Self, PictureError> {
+        let no_picture = |reason: &dyn fmt::Display| PictureError {
             error: Error::new(format!(
                 "{}: found no picture, expected PNG or JPEG ({reason})",
                 path.display()
             )),
             too_large: None,
         };
-        let decoded = Decoded::from_bytes(bytes, most_pixels).map_err(|found| match found {
-            Undecoded::Broken(reason) => no_picture(&reason),
-            Undecoded::Large([width, height]) => Undecodable {
+        let decoded = DecodedPicture::from_bytes(bytes, most_pixels).map_err(|found| match found {
+            DecodeFailure::Broken(reason) => no_picture(&reason),
+            DecodeFailure::Large([width, height]) => PictureError {
                 error: Error::new(format!(
                     "{}: found a picture of {width} x {height} pixels, expected at most {most_pixels} in all: make it smaller",
                     path.display()
@@ -128,11 +128,11 @@ impl Picture {
                 too_large: Some([width, height]),
             },
         })?;
-        let turned = Turned::from_exif(decoded.orientation);
+        let turned = PictureOrientation::from_exif(decoded.orientation);
         let gray = decoded.gray().map_err(|error| no_picture(&error))?;
         drop(decoded);
         let gray = turned.apply(gray).map_err(|error| no_picture(&error))?;
-        Ok(Picture { gray, turned })
+        Ok(GrayPicture { gray, turned })
     }
 }
 
@@ -141,7 +141,7 @@ pub const MOST_PIXELS: u64 = 50_000_000;
 
 /// Reason why a file is no picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Undecodable {
+pub struct PictureError {
     /// Fault, in a sentence.
     pub error: Error,
     /// Width and height of a picture with more than the permitted pixels.

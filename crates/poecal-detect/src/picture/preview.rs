@@ -2,8 +2,8 @@
 
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
+use crate::detection::DetectedCorner;
 use crate::error::{Error, Result};
-use crate::found::Corner;
 use crate::gray::Gray;
 
 /// Radius of the ring around a corner, pixels, and its parts.
@@ -17,7 +17,7 @@ const OTHER: [u8; 3] = [30, 170, 60];
 ///
 /// # Errors
 /// If it cannot be encoded.
-pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
+pub fn preview(gray: &Gray, corners: &[DetectedCorner]) -> Result<Vec<u8>> {
     let (width, height) = (gray.width(), gray.height());
     let mut colours: Vec<[u8; 3]> = gray.bytes().into_iter().map(|level| [level; 3]).collect();
     for corner in corners {
@@ -33,7 +33,7 @@ pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
             }
         }
     }
-    encoded(gray, ColorType::Rgb, colours.as_flattened())
+    encode_png(gray, ColorType::Rgb, colours.as_flattened())
 }
 
 /// A picture as PNG, as a camera saves it: 8 bits of gray.
@@ -41,11 +41,11 @@ pub fn preview(gray: &Gray, corners: &[Corner]) -> Result<Vec<u8>> {
 /// # Errors
 /// If it cannot be encoded.
 pub fn png(gray: &Gray) -> Result<Vec<u8>> {
-    encoded(gray, ColorType::Grayscale, &gray.bytes())
+    encode_png(gray, ColorType::Grayscale, &gray.bytes())
 }
 
 /// Samples of 8 bits of a picture of this size as PNG.
-fn encoded(gray: &Gray, colours: ColorType, samples: &[u8]) -> Result<Vec<u8>> {
+fn encode_png(gray: &Gray, colours: ColorType, samples: &[u8]) -> Result<Vec<u8>> {
     let written = || -> std::result::Result<Vec<u8>, EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = Encoder::new(&mut bytes, gray.width() as u32, gray.height() as u32);
@@ -66,14 +66,14 @@ mod tests {
     use std::io::Cursor;
 
     use super::*;
-    use crate::found::Kind;
+    use crate::detection::PointKind;
 
     #[test]
     fn a_preview_is_a_png_of_the_size_of_the_picture_with_rings() {
-        let gray = Gray::filled(40, 30, 128.0);
+        let gray = Gray::from_level(40, 30, 128.0);
         let corners = [
-            Corner { id: 0, kind: Kind::Corner, u_px: 20.0, v_px: 15.0, sigma_px: 0.1 },
-            Corner { id: 1, kind: Kind::Corner, u_px: 1.0, v_px: 1.0, sigma_px: 0.1 },
+            DetectedCorner { id: 0, kind: PointKind::Corner, u_px: 20.0, v_px: 15.0, sigma_px: 0.1 },
+            DetectedCorner { id: 1, kind: PointKind::Corner, u_px: 1.0, v_px: 1.0, sigma_px: 0.1 },
         ];
         let bytes = preview(&gray, &corners).unwrap();
         let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().unwrap();

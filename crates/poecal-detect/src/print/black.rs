@@ -1,40 +1,40 @@
 //! Black areas of a board on its page.
 
-use super::sheet::{Disc, Rectangle, placed};
-use crate::layout::{Layout, Pattern, Tagged};
+use super::sheet::{Disc, Rectangle, place_on_page};
+use crate::layout::{BoardLayout, BoardPattern, TagGrid};
 
 /// A layout on a page: millimetres of its squares.
-struct OnPage<'a> {
-    layout: &'a Layout,
+struct PageLayout<'a> {
+    layout: &'a BoardLayout,
     origin_mm: [f64; 2],
 }
 
-impl OnPage<'_> {
+impl PageLayout<'_> {
     fn rectangle(&self, from: [f64; 2], to: [f64; 2]) -> Rectangle {
-        let [from_mm, to_mm] = [from, to].map(|it| placed(self.layout, self.origin_mm, it));
+        let [from_mm, to_mm] = [from, to].map(|it| place_on_page(self.layout, self.origin_mm, it));
         Rectangle { from_mm, to_mm }
     }
 }
 
 /// Squares, and the cells of markers and tags.
-pub(super) fn rectangles(layout: &Layout, origin_mm: [f64; 2]) -> Vec<Rectangle> {
-    let page = OnPage { layout, origin_mm };
+pub(super) fn rectangles(layout: &BoardLayout, origin_mm: [f64; 2]) -> Vec<Rectangle> {
+    let page = PageLayout { layout, origin_mm };
     match &layout.pattern {
-        Pattern::Squares => squares(&page),
-        Pattern::Dots { .. } => Vec::new(),
-        Pattern::Tags(tags) => tagged(&page, tags),
+        BoardPattern::Squares => squares(&page),
+        BoardPattern::Dots { .. } => Vec::new(),
+        BoardPattern::Tags(tags) => tag_rectangles(&page, tags),
     }
 }
 
 /// Dots.
-pub(super) fn discs(layout: &Layout, origin_mm: [f64; 2]) -> Vec<Disc> {
-    let Pattern::Dots { diameter, .. } = layout.pattern else { return Vec::new() };
+pub(super) fn discs(layout: &BoardLayout, origin_mm: [f64; 2]) -> Vec<Disc> {
+    let BoardPattern::Dots { diameter, .. } = layout.pattern else { return Vec::new() };
     let radius_mm = 0.5 * diameter * layout.square_m * 1e3;
-    let middle_mm = |id: usize| placed(layout, origin_mm, layout.corner(id).into());
+    let middle_mm = |id: usize| place_on_page(layout, origin_mm, layout.corner(id).into());
     (0..layout.corners()).map(|id| Disc { middle_mm: middle_mm(id), radius_mm }).collect()
 }
 
-fn squares(page: &OnPage<'_>) -> Vec<Rectangle> {
+fn squares(page: &PageLayout<'_>) -> Vec<Rectangle> {
     let layout = page.layout;
     let [columns, rows] = layout.squares;
     let all = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
@@ -54,7 +54,7 @@ fn squares(page: &OnPage<'_>) -> Vec<Rectangle> {
 }
 
 /// Tags, and on Kalibr's boards the squares at their corners.
-fn tagged(page: &OnPage<'_>, tags: &Tagged) -> Vec<Rectangle> {
+fn tag_rectangles(page: &PageLayout<'_>, tags: &TagGrid) -> Vec<Rectangle> {
     let mut black = Vec::new();
     for id in 0..tags.columns * tags.rows {
         black.extend(marker(page, id, tags.cells(), |column, row| tags.is_black(id, column, row)));
@@ -73,7 +73,7 @@ fn tagged(page: &OnPage<'_>, tags: &Tagged) -> Vec<Rectangle> {
 
 /// Black areas of a marker: runs of cells, row by row.
 fn marker(
-    page: &OnPage<'_>,
+    page: &PageLayout<'_>,
     id: usize,
     cells: usize,
     is_black: impl Fn(usize, usize) -> bool,

@@ -1,14 +1,14 @@
 //! The page of a board, to scale.
 
 use super::black::{discs, rectangles};
+use super::board_description::unit;
 use super::furniture::{labels, rulers, texts};
-use super::page::Page;
-use super::sheet::{Rectangle, Sheet};
-use super::words::unit;
+use super::page::PaperSize;
+use super::sheet::{PrintSheet, Rectangle};
 use super::{decimal, pdf, svg};
 use crate::error::{Error, Result};
-use crate::layout::{Layout, Pattern};
-use crate::spec::Spec;
+use crate::layout::{BoardLayout, BoardPattern};
+use crate::spec::BoardSpec;
 
 /// White margin around the board for rulers and words, millimetres.
 const MARGIN_MM: f64 = 10.0;
@@ -18,12 +18,12 @@ const LEAST_MM: f64 = 1.0;
 const APART: f64 = 0.4;
 const APART_MM: f64 = 8.0;
 
-impl Sheet {
+impl PrintSheet {
     /// The page of a board, which is in its middle; of loose tags as many as fit, from the first one on.
     ///
     /// # Errors
     /// If the board is larger than the space on the page, or has squares below 1 mm.
-    pub fn new(spec: &Spec, page: &Page) -> Result<Self> {
+    pub fn new(spec: &BoardSpec, page: &PaperSize) -> Result<Self> {
         let square_mm = spec.square_m() * 1e3;
         if square_mm < LEAST_MM {
             let unit = unit(spec);
@@ -47,27 +47,36 @@ impl Sheet {
         rectangles.extend(lines);
         words.extend(texts(spec, size_mm, &board, square_mm));
         words.extend(labels(&layout, origin_mm));
-        Ok(Sheet { size_mm, title: spec.to_string(), board, rectangles, discs, words, layout, origin_mm })
+        Ok(PrintSheet {
+            size_mm,
+            title: spec.to_string(),
+            board,
+            rectangles,
+            discs,
+            words,
+            layout,
+            origin_mm,
+        })
     }
 
     /// The page as SVG, in millimetres.
     #[must_use]
     pub fn svg(&self) -> String {
-        svg::written(self)
+        svg::write_svg(self)
     }
 
     /// The page as PDF, which requests unscaled printing. It is ASCII.
     #[must_use]
     pub fn pdf(&self) -> String {
-        pdf::written(self)
+        pdf::write_pdf(self)
     }
 }
 
 /// Layout that is drawn on a page of this size.
-fn layout(spec: &Spec, size_mm: [f64; 2]) -> Layout {
-    let mut layout = Layout::new(spec);
+fn layout(spec: &BoardSpec, size_mm: [f64; 2]) -> BoardLayout {
+    let mut layout = BoardLayout::new(spec);
     let square_mm = layout.square_m * 1e3;
-    let Pattern::Tags(tags) = &mut layout.pattern else { return layout };
+    let BoardPattern::Tags(tags) = &mut layout.pattern else { return layout };
     if tags.kalibr {
         return layout;
     }
@@ -81,8 +90,8 @@ fn layout(spec: &Spec, size_mm: [f64; 2]) -> Layout {
 }
 
 /// Extent of a layout, in its squares: the upper left and the lower right corner.
-fn extent(layout: &Layout) -> [[f64; 2]; 2] {
-    let Pattern::Tags(tags) = &layout.pattern else {
+fn extent(layout: &BoardLayout) -> [[f64; 2]; 2] {
+    let BoardPattern::Tags(tags) = &layout.pattern else {
         return [[0.0; 2], layout.squares.map(|it| it as f64)];
     };
     let pitch = 1.0 + tags.gap;
@@ -91,13 +100,13 @@ fn extent(layout: &Layout) -> [[f64; 2]; 2] {
 }
 
 /// Rank of a layout on a page: number of its points there, and the white around it, millimetres.
-fn rank(layout: &Layout, size_mm: [f64; 2]) -> (usize, f64) {
+fn rank(layout: &BoardLayout, size_mm: [f64; 2]) -> (usize, f64) {
     let [from, to] = extent(layout);
     let white = |axis: usize| (size_mm[axis] - (to[axis] - from[axis]) * layout.square_m * 1e3) / 2.0;
     (layout.corners(), white(0).min(white(1)))
 }
 
-fn too_large(spec: &Spec, page: &Page) -> Error {
+fn too_large(spec: &BoardSpec, page: &PaperSize) -> Error {
     let mm = |value: f64| decimal(value, 2);
     // A single tag for loose tags.
     let [from, to] = extent(&layout(spec, [0.0; 2]));

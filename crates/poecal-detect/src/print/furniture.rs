@@ -1,11 +1,11 @@
 //! Surroundings of a board on its page: rulers and words, outside one square of white if the page is large enough.
 
+use super::board_description::{describe_board, other_programs_names, spans};
 use super::decimal;
 use super::helvetica::{CAPITALS, width};
-use super::sheet::{Rectangle, Words, placed};
-use super::words::{described, elsewhere, spans};
-use crate::layout::{Layout, Pattern};
-use crate::spec::Spec;
+use super::sheet::{Rectangle, SheetText, place_on_page};
+use crate::layout::{BoardLayout, BoardPattern};
+use crate::spec::BoardSpec;
 
 /// Margin that printers leave white at the edge of the page, millimetres.
 const EDGE_MM: f64 = 5.0;
@@ -28,9 +28,9 @@ const LABEL_MM: f64 = 2.6;
 /// Separator of words on one line.
 const BETWEEN: &str = "   |   ";
 
-fn line_of(text: String, at_mm: [f64; 2], size_mm: f64, downwards: bool) -> Words {
+fn line_of(text: String, at_mm: [f64; 2], size_mm: f64, downwards: bool) -> SheetText {
     let length_mm = width(&text) * size_mm;
-    Words { text, at_mm, size_mm, length_mm, downwards }
+    SheetText { text, at_mm, size_mm, length_mm, downwards }
 }
 
 /// Distance from the board to an item of this depth: a square, or as far as the page allows.
@@ -45,7 +45,11 @@ fn length(side_mm: f64, from_mm: f64, type_mm: f64) -> f64 {
 }
 
 /// A ruler below the board, and one on its left: both begin where its squares do.
-pub(super) fn rulers(size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> (Vec<Rectangle>, Vec<Words>) {
+pub(super) fn rulers(
+    size_mm: [f64; 2],
+    board: &Rectangle,
+    square_mm: f64,
+) -> (Vec<Rectangle>, Vec<SheetText>) {
     let (mut lines, mut words) = (Vec::new(), Vec::new());
     let [left, upper] = board.from_mm;
     for axis in [0, 1] {
@@ -81,12 +85,17 @@ pub(super) fn rulers(size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> (V
 }
 
 /// Description of the board, above it: as many of the sentences as fit, in the largest type that fits.
-pub(super) fn texts(spec: &Spec, size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> Vec<Words> {
+pub(super) fn texts(
+    spec: &BoardSpec,
+    size_mm: [f64; 2],
+    board: &Rectangle,
+    square_mm: f64,
+) -> Vec<SheetText> {
     let sentences = [
-        described(spec),
+        describe_board(spec),
         format!("poecal: --markers {spec}"),
         format!("Print at 100 % (actual size). {}; check the rulers.", spans(spec)),
-        elsewhere(spec),
+        other_programs_names(spec),
     ];
     let margin = board.from_mm[1];
     let wide = size_mm[0] - 2.0 * EDGE_MM;
@@ -105,13 +114,13 @@ pub(super) fn texts(spec: &Spec, size_mm: [f64; 2], board: &Rectangle, square_mm
 }
 
 /// The names of loose tags, below each.
-pub(super) fn labels(layout: &Layout, origin_mm: [f64; 2]) -> Vec<Words> {
+pub(super) fn labels(layout: &BoardLayout, origin_mm: [f64; 2]) -> Vec<SheetText> {
     let tags = match &layout.pattern {
-        Pattern::Tags(tags) if !tags.kalibr => tags,
-        Pattern::Tags(_) | Pattern::Squares | Pattern::Dots { .. } => return Vec::new(),
+        BoardPattern::Tags(tags) if !tags.kalibr => tags,
+        BoardPattern::Tags(_) | BoardPattern::Squares | BoardPattern::Dots { .. } => return Vec::new(),
     };
     let label = |id: usize| {
-        let [x, y] = placed(layout, origin_mm, layout.corner(4 * id + 3).into());
+        let [x, y] = place_on_page(layout, origin_mm, layout.corner(4 * id + 3).into());
         let middle = y + 0.5 * (tags.gap * layout.square_m * 1e3 + LABEL_MM * CAPITALS);
         line_of(format!("tag{id}"), [x, middle], LABEL_MM, false)
     };
@@ -128,13 +137,13 @@ fn set(sentences: &[String], wide: f64, room: f64) -> Option<(Vec<String>, f64)>
     let words: Vec<&str> = joined.split(' ').collect();
     let whole: Vec<&str> = sentences.iter().map(String::as_str).collect();
     let alone = all().filter(|size| *size >= ALONE_MM).map(|size| (sentences.to_vec(), size));
-    let beside = all().map(|size| (filled(&whole, BETWEEN, wide / size), size));
-    let broken = all().map(|size| (filled(&words, " ", wide / size), size));
+    let beside = all().map(|size| (fill_lines(&whole, BETWEEN, wide / size), size));
+    let broken = all().map(|size| (fill_lines(&words, " ", wide / size), size));
     alone.chain(beside).chain(broken).find(|(lines, size)| fits(lines, *size))
 }
 
 /// Parts in lines, as many on each as fit.
-fn filled(parts: &[&str], between: &str, wide: f64) -> Vec<String> {
+fn fill_lines(parts: &[&str], between: &str, wide: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for part in parts {
         match lines.last_mut() {

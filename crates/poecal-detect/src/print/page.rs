@@ -10,7 +10,7 @@ use crate::spec::length;
 /// A page: `a4`, `a3` and `letter`, whose orientation follows the board, or `WIDTHxHEIGHT` with a unit, such as `400x300mm`, in the stated
 /// orientation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Page {
+pub struct PaperSize {
     size_mm: [f64; 2],
     /// True if it may be turned.
     turns: bool,
@@ -22,7 +22,7 @@ const NAMED: [(&str, [f64; 2]); 3] =
 /// Sides of a page, millimetres: the largest in a PDF is 5,080.
 const SIDES_MM: std::ops::RangeInclusive<f64> = 50.0..=5000.0;
 
-impl Page {
+impl PaperSize {
     /// Its permitted orientations, width and height in millimetres: one, or two.
     pub(super) fn ways(&self) -> Vec<[f64; 2]> {
         let [width, height] = self.size_mm;
@@ -30,13 +30,13 @@ impl Page {
     }
 }
 
-impl FromStr for Page {
+impl FromStr for PaperSize {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
         let text = text.trim();
         if let Some((_, size_mm)) = NAMED.iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
-            return Ok(Page { size_mm: *size_mm, turns: true });
+            return Ok(PaperSize { size_mm: *size_mm, turns: true });
         }
         let wrong = || {
             Error::new(format!(
@@ -51,11 +51,11 @@ impl FromStr for Page {
         };
         let height = height.strip_suffix(unit).unwrap_or(height);
         let size_mm = [side(width).ok_or_else(wrong)?, side(height).ok_or_else(wrong)?];
-        Ok(Page { size_mm, turns: false })
+        Ok(PaperSize { size_mm, turns: false })
     }
 }
 
-impl fmt::Display for Page {
+impl fmt::Display for PaperSize {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size_mm.map(|it| decimal(it, 2));
         write!(formatter, "{width} x {height} mm")
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn pages_are_read_by_name_or_size() {
-        let ways = |text: &str| text.parse::<Page>().map(|page| page.ways());
+        let ways = |text: &str| text.parse::<PaperSize>().map(|page| page.ways());
         assert_eq!(ways("A4").unwrap(), [[210.0, 297.0], [297.0, 210.0]]);
         assert_eq!(ways("400x300.5mm").unwrap(), [[400.0, 300.5]]);
         assert_eq!(ways("40 x 30 cm").unwrap(), [[400.0, 300.0]]);

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 
 use super::decimal;
-use super::sheet::{Disc, Sheet};
+use super::sheet::{Disc, PrintSheet};
 
 /// Points per millimetre.
 const POINTS: f64 = 72.0 / 25.4;
 
 /// A document of one page, in ASCII. It requests unscaled printing.
-pub(super) fn written(sheet: &Sheet) -> String {
+pub(super) fn write_pdf(sheet: &PrintSheet) -> String {
     let [width, height] = sheet.size_mm.map(|it| decimal(it * POINTS, 5));
     let content = content(sheet);
     let objects = [
@@ -20,7 +20,7 @@ pub(super) fn written(sheet: &Sheet) -> String {
         ),
         format!("<< /Length {} >>\nstream\n{content}\nendstream", content.len()),
         "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>".to_owned(),
-        format!("<< /Title ({}) /Producer (poecal) >>", escaped(&sheet.title)),
+        format!("<< /Title ({}) /Producer (poecal) >>", escape_pdf(&sheet.title)),
     ];
     let mut out = "%PDF-1.6\n".to_owned();
     let mut places = Vec::new();
@@ -40,7 +40,7 @@ pub(super) fn written(sheet: &Sheet) -> String {
 }
 
 /// Content of the page, in millimetres from its upper left corner: y is turned downwards for all of it, and back for words.
-fn content(sheet: &Sheet) -> String {
+fn content(sheet: &PrintSheet) -> String {
     let mm = |value: f64| decimal(value, 5);
     let (scale, height) = (decimal(POINTS, 10), decimal(sheet.size_mm[1] * POINTS, 5));
     let mut out = format!("{scale} 0 0 -{scale} 0 {height} cm\n0 g\n");
@@ -57,7 +57,7 @@ fn content(sheet: &Sheet) -> String {
     for words in &sheet.words {
         let ([x, y], size) = (words.at_mm.map(mm), mm(words.size_mm));
         let turn = if words.downwards { format!("0 {size} {size} 0") } else { format!("{size} 0 0 -{size}") };
-        let _ = writeln!(out, "{turn} {x} {y} Tm ({}) Tj", escaped(&words.text));
+        let _ = writeln!(out, "{turn} {x} {y} Tm ({}) Tj", escape_pdf(&words.text));
     }
     out + "ET"
 }
@@ -79,6 +79,6 @@ fn outline(out: &mut String, disc: &Disc) {
     out.push_str("h\n");
 }
 
-fn escaped(text: &str) -> String {
+fn escape_pdf(text: &str) -> String {
     text.replace('\\', "\\\\").replace('(', "\\(").replace(')', "\\)")
 }

@@ -1,6 +1,6 @@
 //! Content of a page.
 
-use crate::layout::Layout;
+use crate::layout::BoardLayout;
 
 /// A rectangle, millimetres from the upper left corner of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Disc {
 
 /// A line of words in Helvetica, millimetres from the upper left corner of the page.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Words {
+pub struct SheetText {
     /// The words, in ASCII.
     pub text: String,
     /// Start of their base line.
@@ -37,7 +37,7 @@ pub struct Words {
 
 /// A page with a board, rulers and words, to scale.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sheet {
+pub struct PrintSheet {
     /// Width and height of the page, millimetres.
     pub size_mm: [f64; 2],
     /// Title: the drawn board.
@@ -49,18 +49,18 @@ pub struct Sheet {
     /// Black discs.
     pub discs: Vec<Disc>,
     /// Words on the page.
-    pub words: Vec<Words>,
+    pub words: Vec<SheetText>,
     /// Drawn layout: of loose tags as many as fit.
-    pub(super) layout: Layout,
+    pub(super) layout: BoardLayout,
     /// Origin of the layout on the page.
     pub(super) origin_mm: [f64; 2],
 }
 
-impl Sheet {
-    /// Position of a point of the board on the page, millimetres from its upper left corner: by its number, as of a [`Corner`](crate::Corner).
+impl PrintSheet {
+    /// Position of a point of the board on the page, millimetres from its upper left corner: by its number, as of a [`DetectedCorner`](crate::DetectedCorner).
     #[must_use]
     pub fn place_mm(&self, id: usize) -> [f64; 2] {
-        placed(&self.layout, self.origin_mm, self.layout.corner(id).into())
+        place_on_page(&self.layout, self.origin_mm, self.layout.corner(id).into())
     }
 
     /// Number of points on the page.
@@ -71,6 +71,6 @@ impl Sheet {
 }
 
 /// Position on a page of a point of a layout in squares.
-pub(super) fn placed(layout: &Layout, origin_mm: [f64; 2], place: [f64; 2]) -> [f64; 2] {
+pub(super) fn place_on_page(layout: &BoardLayout, origin_mm: [f64; 2], place: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|axis| origin_mm[axis] + place[axis] * layout.square_m * 1e3)
 }

@@ -3,16 +3,16 @@
 use std::fmt::Write as _;
 
 use super::decimal;
-use super::sheet::Sheet;
+use super::sheet::PrintSheet;
 
 /// Decimals of millimetres.
 const DIGITS: usize = 4;
 
 /// The page in millimetres. Black areas are one path, so that no light line appears between touching parts.
-pub(super) fn written(sheet: &Sheet) -> String {
+pub(super) fn write_svg(sheet: &PrintSheet) -> String {
     let mm = |value: f64| decimal(value, DIGITS);
     let [width, height] = sheet.size_mm.map(mm);
-    let title = escaped(&sheet.title);
+    let title = escape_xml(&sheet.title);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n\
          <title>{title}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n<path fill=\"#000\" d=\""
@@ -33,7 +33,7 @@ pub(super) fn written(sheet: &Sheet) -> String {
     for words in &sheet.words {
         let ([x, y], size, length) = (words.at_mm.map(mm), mm(words.size_mm), mm(words.length_mm));
         let turn = if words.downwards { format!(" transform=\"rotate(90 {x} {y})\"") } else { String::new() };
-        let text = escaped(&words.text);
+        let text = escape_xml(&words.text);
         let _ = writeln!(
             out,
             "<text xml:space=\"preserve\" x=\"{x}\" y=\"{y}\" font-size=\"{size}\" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"{turn}>{text}</text>"
@@ -42,6 +42,6 @@ pub(super) fn written(sheet: &Sheet) -> String {
     out + "</g>\n</svg>\n"
 }
 
-fn escaped(text: &str) -> String {
+fn escape_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::layout::{Layout, Pattern, Tagged};
+use crate::layout::{BoardLayout, BoardPattern, TagGrid};
 
 /// Background beside the board.
 pub(super) const BEHIND: i8 = 0;
@@ -15,7 +15,7 @@ pub(super) const LIGHT: i8 = 2;
 const PAPER: f64 = 0.5;
 
 /// The shades of a board at positions in squares.
-pub(super) struct Shades {
+pub(super) struct BoardShades {
     squares: [usize; 2],
     first_dark: bool,
     /// Side of a marker in squares, and cells along it.
@@ -25,25 +25,25 @@ pub(super) struct Shades {
     dark: Vec<Option<Vec<bool>>>,
     /// Radius of dots, squares, and true if they are on every second corner.
     dots: Option<(f64, bool)>,
-    tags: Option<Tagged>,
+    tags: Option<TagGrid>,
 }
 
-impl Shades {
-    pub(super) fn new(layout: &Layout) -> Self {
+impl BoardShades {
+    pub(super) fn new(layout: &BoardLayout) -> Self {
         let [columns, rows] = layout.squares;
-        let mut shades = Shades {
+        let mut shades = BoardShades {
             squares: layout.squares,
             first_dark: layout.first_dark,
             marker: 0.0,
             cells: 1,
             dark: vec![None; columns * rows],
             dots: match layout.pattern {
-                Pattern::Squares | Pattern::Tags(_) => None,
-                Pattern::Dots { asymmetric, diameter } => Some((0.5 * diameter, asymmetric)),
+                BoardPattern::Squares | BoardPattern::Tags(_) => None,
+                BoardPattern::Dots { asymmetric, diameter } => Some((0.5 * diameter, asymmetric)),
             },
             tags: match &layout.pattern {
-                Pattern::Tags(tags) => Some(tags.clone()),
-                Pattern::Squares | Pattern::Dots { .. } => None,
+                BoardPattern::Tags(tags) => Some(tags.clone()),
+                BoardPattern::Squares | BoardPattern::Dots { .. } => None,
             },
         };
         let Some((dictionary, side)) = &layout.markers else { return shades };
@@ -61,7 +61,7 @@ impl Shades {
     }
 
     /// The shade at a position.
-    pub(super) fn at(&self, place: Vector2<f64>) -> i8 {
+    pub(super) fn shade_at(&self, place: Vector2<f64>) -> i8 {
         let [width, height] = self.squares.map(|it| it as f64);
         let off = |value: f64, size: f64| (-value).max(value - size);
         let outside = off(place.x, width).max(off(place.y, height));
@@ -101,7 +101,7 @@ impl Shades {
 }
 
 /// True if a point is dark, in sides of a tag from the upper left one.
-fn is_tag(tags: &Tagged, place: Vector2<f64>) -> bool {
+fn is_tag(tags: &TagGrid, place: Vector2<f64>) -> bool {
     let pitch = 1.0 + tags.gap;
     let at = |value: f64, count: usize| {
         // Number of the tag, and position on it or in the gap after it.

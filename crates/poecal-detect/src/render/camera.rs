@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 
 /// A camera: pinhole with `k1` and `k2` of OpenCV.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
+pub struct RenderCamera {
     /// Columns and rows of its pictures.
     pub size: [usize; 2],
     /// Focal lengths, pixels.
@@ -15,7 +15,7 @@ pub struct Camera {
     pub distortion: [f64; 2],
 }
 
-impl Camera {
+impl RenderCamera {
     /// Pixel of a point in the camera's frame; `None` behind the camera, or so far from the axis that the distortion folds.
     #[must_use]
     pub fn project(&self, point: &Vector3<f64>) -> Option<Vector2<f64>> {
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn a_ray_is_seen_where_it_came_from() {
-        let camera = Camera {
+        let camera = RenderCamera {
             size: [1920, 1200],
             focal_px: [1500.0, 1490.0],
             centre_px: [950.0, 610.0],

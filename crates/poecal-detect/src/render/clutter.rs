@@ -2,22 +2,25 @@
 
 use nalgebra::Vector2;
 
-use super::random::Random;
+use super::random::RandomGenerator;
 use crate::gray::Gray;
 
 /// A background of a workshop: a gradient of light with bars, discs, stripes, labels and tiles in all sizes, without blur and noise.
 #[must_use]
-pub fn clutter([width, height]: [usize; 2], random: &mut Random) -> Gray {
-    let (left, right, lower) =
-        (random.uniform(20.0, 200.0), random.uniform(20.0, 200.0), random.uniform(-40.0, 40.0));
-    let mut picture = Gray::filled(width, height, 0.0);
+pub fn clutter([width, height]: [usize; 2], random: &mut RandomGenerator) -> Gray {
+    let (left, right, lower) = (
+        random.draw_uniform(20.0, 200.0),
+        random.draw_uniform(20.0, 200.0),
+        random.draw_uniform(-40.0, 40.0),
+    );
+    let mut picture = Gray::from_level(width, height, 0.0);
     for (at, level) in picture.levels_mut().iter_mut().enumerate() {
         let (x, y) = ((at % width) as f64 / width as f64, (at / width) as f64 / height as f64);
         *level = (left + (right - left) * x + lower * y).clamp(0.0, 255.0) as f32;
     }
-    let shapes = 15 + random.below(25);
+    let shapes = 15 + random.draw_below(25);
     for _ in 0..shapes {
-        let shape = Shape::random([width, height], random);
+        let shape = ClutterShape::random([width, height], random);
         shape.paint(&mut picture);
     }
     picture
@@ -35,7 +38,7 @@ enum Fill {
     Dots(f64),
 }
 
-struct Shape {
+struct ClutterShape {
     middle: Vector2<f64>,
     half: [f64; 2],
     turn: f64,
@@ -43,22 +46,25 @@ struct Shape {
     fill: Fill,
 }
 
-impl Shape {
-    fn random([width, height]: [usize; 2], random: &mut Random) -> Self {
-        let long = random.uniform(2.5, 5.6).exp();
-        let fill = match random.below(10) {
+impl ClutterShape {
+    fn random([width, height]: [usize; 2], random: &mut RandomGenerator) -> Self {
+        let long = random.draw_uniform(2.5, 5.6).exp();
+        let fill = match random.draw_below(10) {
             0..=3 => Fill::Plain,
             4 => Fill::Disc,
-            5 => Fill::Stripes(random.uniform(4.0, 40.0)),
-            6 | 7 => Fill::Cells(4 + random.below(6), random.uniform(0.0, 1e15) as u64),
-            8 => Fill::Tiles(random.uniform(10.0, 40.0)),
-            _ => Fill::Dots(random.uniform(8.0, 40.0)),
+            5 => Fill::Stripes(random.draw_uniform(4.0, 40.0)),
+            6 | 7 => Fill::Cells(4 + random.draw_below(6), random.draw_uniform(0.0, 1e15) as u64),
+            8 => Fill::Tiles(random.draw_uniform(10.0, 40.0)),
+            _ => Fill::Dots(random.draw_uniform(8.0, 40.0)),
         };
-        Shape {
-            middle: Vector2::new(random.uniform(0.0, width as f64), random.uniform(0.0, height as f64)),
-            half: [long, long * random.uniform(0.2, 1.0)],
-            turn: random.uniform(0.0, 3.2),
-            levels: [random.uniform(5.0, 250.0), random.uniform(5.0, 250.0)],
+        ClutterShape {
+            middle: Vector2::new(
+                random.draw_uniform(0.0, width as f64),
+                random.draw_uniform(0.0, height as f64),
+            ),
+            half: [long, long * random.draw_uniform(0.2, 1.0)],
+            turn: random.draw_uniform(0.0, 3.2),
+            levels: [random.draw_uniform(5.0, 250.0), random.draw_uniform(5.0, 250.0)],
             fill,
         }
     }

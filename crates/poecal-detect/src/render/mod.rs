@@ -11,20 +11,20 @@ mod random;
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-pub use camera::Camera;
+pub use camera::RenderCamera;
 pub use clutter::clutter;
-pub use draw::{Draw, Drawn};
-pub use random::Random;
+pub use draw::{DrawnScene, RandomScenes};
+pub use random::RandomGenerator;
 
 use crate::gray::Gray;
-use crate::layout::Layout;
-use board::Shades;
+use crate::layout::BoardLayout;
+use board::BoardShades;
 
 /// Scene before a camera, and the camera's properties.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
+pub struct RenderScene {
     /// The camera.
-    pub camera: Camera,
+    pub camera: RenderCamera,
     /// Rotation from the board's axes (x along columns, y along rows, origin at the first inner corner) to the camera's.
     pub rotation: Matrix3<f64>,
     /// The first inner corner in the camera's frame, metres.
@@ -38,12 +38,12 @@ pub struct Scene {
     /// Standard deviation of the noise of a pixel, gray levels.
     pub noise: f64,
     /// Patch that covers a part of the board.
-    pub patch: Option<Patch>,
+    pub patch: Option<Occluder>,
 }
 
 /// A rectangle in the picture that covers its background.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
+pub struct Occluder {
     /// Its middle, pixels.
     pub middle_px: Vector2<f64>,
     /// Half its sides, pixels.
@@ -54,7 +54,7 @@ pub struct Patch {
     pub level: f64,
 }
 
-impl Patch {
+impl Occluder {
     /// True if it covers a point, or is within this margin of it.
     #[must_use]
     pub fn covers(&self, place: Vector2<f64>, margin_px: f64) -> bool {
@@ -67,7 +67,7 @@ impl Patch {
 
 /// True position of a corner, or of the middle of a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct True {
+pub struct TrueCorner {
     /// Number of the point.
     pub id: usize,
     /// Position, pixels.
@@ -81,10 +81,10 @@ pub const SEEN_PX: f64 = 5.0;
 /// Samples along a side of a pixel at an edge.
 const SAMPLES: usize = 8;
 
-impl Scene {
+impl RenderScene {
     /// Positions of the inner corners or the dots in the picture.
     #[must_use]
-    pub fn truth(&self, layout: &Layout) -> Vec<True> {
+    pub fn truth(&self, layout: &BoardLayout) -> Vec<TrueCorner> {
         let [width, height] = self.camera.size.map(|it| it as f64 - 1.0);
         let dot_m = layout.dot_radius() * layout.square_m;
         (0..layout.corners())
@@ -101,17 +101,17 @@ impl Scene {
                 let covered = self.patch.is_some_and(|it| it.covers(place_px, seen_px));
                 let (x, y) = (place_px.x, place_px.y);
                 let inside = x >= seen_px && y >= seen_px && x + seen_px <= width && y + seen_px <= height;
-                Some(True { id, place_px, visible: inside && !covered })
+                Some(TrueCorner { id, place_px, visible: inside && !covered })
             })
             .collect()
     }
 
     /// The picture, before a background.
     #[must_use]
-    pub fn render(&self, layout: &Layout, background: &Gray, random: &mut Random) -> Gray {
-        let shades = Shades::new(layout);
+    pub fn render(&self, layout: &BoardLayout, background: &Gray, random: &mut RandomGenerator) -> Gray {
+        let shades = BoardShades::new(layout);
         let lattice = self.lattice(layout);
-        let mut picture = self.sampled(&shades, &lattice, background);
+        let mut picture = self.sample_shades(&shades, &lattice, background);
         if let Some(patch) = &self.patch {
             let width = picture.width();
             for (at, level) in picture.levels_mut().iter_mut().enumerate() {
@@ -120,15 +120,15 @@ impl Scene {
                 }
             }
         }
-        finished(picture, self.blur_px, self.noise, random)
+        finish_picture(picture, self.blur_px, self.noise, random)
     }
 
     /// Positions on the board, squares, of the corners of all pixels.
-    fn lattice(&self, layout: &Layout) -> Vec<Vector2<f64>> {
+    fn lattice(&self, layout: &BoardLayout) -> Vec<Vector2<f64>> {
         let [width, height] = self.camera.size;
         let back = self.rotation.transpose();
         let origin = back * -self.translation_m;
-        let [low, high] = self.around(layout);
+        let [low, high] = self.bounds_in_picture(layout);
         let corner = |at: usize| {
             let (column, row) = (at % (width + 1), at / (width + 1));
             let (x, y) = (column as f64, row as f64);
@@ -148,7 +148,7 @@ impl Scene {
     }
 
     /// Bounding box of the board, with its paper, in the picture: from points along its outline. The whole picture, if one of them is not visible.
-    fn around(&self, layout: &Layout) -> [Vector2<f64>; 2] {
+    fn bounds_in_picture(&self, layout: &BoardLayout) -> [Vector2<f64>; 2] {
         const STEPS: usize = 24;
         let [columns, rows] = layout.squares.map(|it| it as f64 + 2.0);
         let mut limits = [Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY)];
@@ -170,9 +170,9 @@ impl Scene {
         [limits[0].add_scalar(-4.0), limits[1].add_scalar(4.0)]
     }
 
-    fn sampled(&self, shades: &Shades, lattice: &[Vector2<f64>], background: &Gray) -> Gray {
+    fn sample_shades(&self, shades: &BoardShades, lattice: &[Vector2<f64>], background: &Gray) -> Gray {
         let [width, height] = self.camera.size;
-        let at_corners: Vec<i8> = lattice.iter().map(|it| shades.at(*it)).collect();
+        let at_corners: Vec<i8> = lattice.iter().map(|it| shades.shade_at(*it)).collect();
         let corners = |column: usize, row: usize| {
             let first = row * (width + 1) + column;
             [first, first + 1, first + width + 1, first + width + 2]
@@ -188,7 +188,7 @@ impl Scene {
                 edges[first + column.saturating_sub(1)..=first + (column + 1).min(width - 1)].contains(&true)
             })
         };
-        let mut picture = Gray::filled(width, height, 0.0);
+        let mut picture = Gray::from_level(width, height, 0.0);
         for (at, level) in picture.levels_mut().iter_mut().enumerate() {
             let (column, row) = (at % width, at / width);
             let all = corners(column, row);
@@ -199,7 +199,7 @@ impl Scene {
                 for k in 0..SAMPLES * SAMPLES {
                     let [x, y] = [k % SAMPLES, k / SAMPLES].map(|it| (it as f64 + 0.5) / SAMPLES as f64);
                     let place = (a * (1.0 - x) + b * x) * (1.0 - y) + (c * (1.0 - x) + d * x) * y;
-                    sum += self.level(shades.at(place), behind);
+                    sum += self.level(shades.shade_at(place), behind);
                 }
                 sum / (SAMPLES * SAMPLES) as f64
             } else {
@@ -225,8 +225,8 @@ impl Scene {
 
 /// A picture with blur and noise, in integer levels.
 #[must_use]
-pub fn finished(mut picture: Gray, blur_px: f64, noise: f64, random: &mut Random) -> Gray {
-    picture = picture.blurred(blur_px, 4.0);
+pub fn finish_picture(mut picture: Gray, blur_px: f64, noise: f64, random: &mut RandomGenerator) -> Gray {
+    picture = picture.blur(blur_px, 4.0);
     for level in picture.levels_mut() {
         *level = (*level + (noise * random.rough_normal()) as f32).round().clamp(0.0, 255.0);
     }

@@ -5,26 +5,26 @@ use rand_core::{Rng, SeedableRng};
 
 /// Random numbers that a seed determines.
 #[derive(Clone, Debug)]
-pub struct Random {
+pub struct RandomGenerator {
     generator: ChaCha8Rng,
 }
 
-impl Random {
+impl RandomGenerator {
     /// Generator of a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Random { generator: ChaCha8Rng::seed_from_u64(seed) }
+        RandomGenerator { generator: ChaCha8Rng::seed_from_u64(seed) }
     }
 
     /// A number between two others.
-    pub fn uniform(&mut self, from: f64, to: f64) -> f64 {
+    pub fn draw_uniform(&mut self, from: f64, to: f64) -> f64 {
         let part = (self.generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         from + (to - from) * part
     }
 
     /// An integer below another.
-    pub fn below(&mut self, limit: usize) -> usize {
-        (self.uniform(0.0, limit as f64) as usize).min(limit.saturating_sub(1))
+    pub fn draw_below(&mut self, limit: usize) -> usize {
+        (self.draw_uniform(0.0, limit as f64) as usize).min(limit.saturating_sub(1))
     }
 
     /// A nearly normal number of variance one: the sum of eight numbers, which is fast and ends at 4.9.

@@ -48,7 +48,7 @@ impl Dictionary {
     ///
     /// # Errors
     /// If there is none, with the known names.
-    pub fn named(name: &str) -> Result<Self> {
+    pub fn from_name(name: &str) -> Result<Self> {
         let same = |known: &str| {
             known.eq_ignore_ascii_case(name)
                 || known.strip_prefix("DICT_").is_some_and(|it| it.eq_ignore_ascii_case(name))
@@ -76,7 +76,7 @@ impl Dictionary {
 
     /// The smallest sufficient dictionary of each set with the same initial markers.
     #[must_use]
-    pub fn smallest(markers: usize) -> Vec<Self> {
+    pub fn smallest_with(markers: usize) -> Vec<Self> {
         let mut all: Vec<Dictionary> = KNOWN.iter().filter_map(Dictionary::read).collect();
         all.retain(|it| it.len() >= markers);
         all.sort_by_key(Dictionary::len);
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_turned_marker_is_found_with_its_turn() {
-        for dictionary in Dictionary::smallest(17) {
+        for dictionary in Dictionary::smallest_with(17) {
             let bits = dictionary.bits();
             for id in [0, 7, 16] {
                 let mut code = dictionary.codes[id];
@@ -173,7 +173,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(Dictionary::named("4x4_100").unwrap().len(), 100);
-        assert_eq!(Dictionary::smallest(60).iter().filter(|it| it.bits() == 4).count(), 1);
+        assert_eq!(Dictionary::from_name("4x4_100").unwrap().len(), 100);
+        assert_eq!(Dictionary::smallest_with(60).iter().filter(|it| it.bits() == 4).count(), 1);
     }
 }

@@ -9,7 +9,7 @@ use crate::quads::Quad;
 
 /// A marker in a picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Marker {
+pub(crate) struct DetectedMarker {
     pub(crate) id: usize,
     /// Its corners, clockwise from the upper left one of the printed marker.
     pub(crate) corners: Quad,
@@ -18,7 +18,7 @@ pub(crate) struct Marker {
 }
 
 /// Reads markers of a dictionary.
-pub(crate) struct Reader {
+pub(crate) struct MarkerReader {
     dictionary: Dictionary,
     /// Cells of the dark border.
     border: usize,
@@ -29,22 +29,22 @@ const LEAST_CONTRAST: f64 = 6.0;
 /// Share of the cells of the border that must be dark.
 const DARK_BORDER: f64 = 0.9;
 
-impl Reader {
+impl MarkerReader {
     pub(crate) fn new(dictionary: &Dictionary) -> Self {
-        Reader { dictionary: dictionary.clone(), border: 1 }
+        MarkerReader { dictionary: dictionary.clone(), border: 1 }
     }
 
     /// A reader of markers with a border of this number of cells.
     pub(crate) fn with_border(dictionary: &Dictionary, border: usize) -> Self {
-        Reader { dictionary: dictionary.clone(), border }
+        MarkerReader { dictionary: dictionary.clone(), border }
     }
 
     /// The marker of a quadrangle, in any orientation.
-    pub(crate) fn read(&self, gray: &Gray, quad: &Quad) -> Option<Marker> {
+    pub(crate) fn read(&self, gray: &Gray, quad: &Quad) -> Option<DetectedMarker> {
         let code = code(gray, quad, self.dictionary.bits(), self.border)?;
         let (id, turns, wrong) = self.dictionary.find(code)?;
         let corners = [0, 1, 2, 3].map(|k| quad[(k + turns) % 4]);
-        Some(Marker { id, corners, exact: wrong == 0 })
+        Some(DetectedMarker { id, corners, exact: wrong == 0 })
     }
 }
 
@@ -80,7 +80,7 @@ fn cell(gray: &Gray, to_picture: &Homography, [column, row]: [usize; 2], cells: 
     for y in AT {
         for x in AT {
             let place = Vector2::new(column as f64 + x, row as f64 + y) / cells as f64;
-            sum += gray.at(to_picture.map(place)?);
+            sum += gray.level_at(to_picture.map(place)?);
         }
     }
     Some(sum / 9.0)

@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use crate::gray::Gray;
 use crate::normal::LANES;
 use crate::quads::Quad;
-use crate::tagmodel::{Bent, Model};
-use crate::vector::vectorized;
+use crate::tagmodel::{BentTagMap, TagModel};
+use crate::vector::run_vectorized;
 
 /// Width of the light rim that is fitted with the tag, cells.
 const RIM: f64 = 0.7;
@@ -16,12 +16,12 @@ const AROUND: f64 = 6.0;
 const MOST: f64 = 2e6;
 
 /// Cells of a tag with its border, row by row; dark ones are marked.
-pub(crate) struct Cells {
+pub(crate) struct TagCells {
     pub(crate) side: usize,
     pub(crate) dark: Vec<bool>,
 }
 
-impl Cells {
+impl TagCells {
     /// The dark part of an upright rectangle between two corners, cells.
     #[inline(always)]
     pub(crate) fn dark_part(&self, low: [f32; 2], high: [f32; 2]) -> f32 {
@@ -54,7 +54,7 @@ impl Cells {
 }
 
 /// The pixels around a tag, with [`LANES`] more behind the last.
-pub(crate) struct Patch {
+pub(crate) struct TagPatch {
     pub(crate) first: [usize; 2],
     pub(crate) size: [usize; 2],
     pub(crate) levels: Vec<f32>,
@@ -65,13 +65,13 @@ pub(crate) struct Patch {
 
 /// A model in a patch: the light of pixels, their positions on the tag, and 1 for used pixels, 0 for others.
 #[derive(Clone)]
-pub(crate) struct Seen {
+pub(crate) struct PatchModel {
     pub(crate) shade: Vec<f32>,
     pub(crate) own: [Vec<f32>; 2],
     pub(crate) counts: Vec<f32>,
 }
 
-impl Patch {
+impl TagPatch {
     pub(crate) fn new(gray: &Gray, quad: &Quad, noise: f64) -> Option<Self> {
         let side = (quad[2] - quad[0]).norm().max((quad[3] - quad[1]).norm());
         let margin = AROUND + 0.15 * side;
@@ -89,7 +89,7 @@ impl Patch {
         }
         levels.extend([0.0; LANES]);
         let middle = (quad.iter().sum::<Vector2<f64>>() * 0.25).map(f64::round);
-        Some(Patch { first, size, levels, middle, variance: noise * noise })
+        Some(TagPatch { first, size, levels, middle, variance: noise * noise })
     }
 
     /// The first pixel, relative to the middle.
@@ -98,26 +98,25 @@ impl Patch {
     }
 
     /// The light of the pixels by a model, blurred, from 0 to 1.
-    pub(crate) fn seen(&self, model: &Model, cells: &Cells) -> Option<Seen> {
-        let back = model.back()?.around(self.middle);
-        let mut seen = vectorized(
+    pub(crate) fn blurred_model(&self, model: &TagModel, cells: &TagCells) -> Option<PatchModel> {
+        let back = model.to_tag()?.rows_about(self.middle);
+        let mut seen = run_vectorized(
             #[inline(always)]
-            || self.sharp(model, &Bent::new(model, back), cells),
+            || self.sharp_model(model, &BentTagMap::new(model, back), cells),
         );
         let mut shade = std::mem::take(&mut seen.shade);
         shade.truncate(self.size[0] * self.size[1]);
-        seen.shade =
-            Gray::new(self.size[0], self.size[1], shade).ok()?.blurred(model.blur, 3.2).into_levels();
+        seen.shade = Gray::new(self.size[0], self.size[1], shade).ok()?.blur(model.blur, 3.2).into_levels();
         seen.shade.extend([0.0; LANES]);
         Some(seen)
     }
 
     /// The light without blur.
     #[inline(always)]
-    fn sharp(&self, model: &Model, bent: &Bent, cells: &Cells) -> Seen {
+    fn sharp_model(&self, model: &TagModel, bent: &BentTagMap, cells: &TagCells) -> PatchModel {
         let ([width, height], first) = (self.size, self.first_offset());
         let all = |it: f32| vec![it; self.levels.len()];
-        let mut seen = Seen { shade: all(1.0), own: [all(0.0), all(0.0)], counts: all(0.0) };
+        let mut seen = PatchModel { shade: all(1.0), own: [all(0.0), all(0.0)], counts: all(0.0) };
         let (side, rim) = (cells.side as f32, RIM as f32 / cells.side as f32);
         for row in 0..height {
             let columns = model.span(self.first, self.size, row);

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
+use crate::dark_regions::{SmoothedPicture, cross};
 use crate::gray::Gray;
-use crate::parts::{Shades, cross};
 
 /// Corners of a quadrangle, clockwise in the picture.
 pub(crate) type Quad = [Vector2<f64>; 4];
@@ -27,7 +27,7 @@ pub(crate) fn quads_apart(gray: &Gray, noise: f64) -> Vec<Quad> {
 
 /// Quadrangles darker by some thresholds than the surrounding mean.
 fn of_limits(gray: &Gray, limits: &[f64], noise: f64) -> Vec<Quad> {
-    let shades = Shades::new(gray, noise);
+    let shades = SmoothedPicture::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Quad> = Vec::new();
     for half in [longest / 110, longest / 36].map(|it| it.max(7)) {
@@ -145,7 +145,7 @@ fn edge(gray: &Gray, from: Vector2<f64>, to: Vector2<f64>) -> Option<(Vector2<f6
     for k in 0..samples {
         let at = from + (to - from) * (0.1 + 0.8 * (k as f64 + 0.5) / samples as f64);
         for (step, level) in levels.iter_mut().enumerate() {
-            *level = gray.at(at + inwards * ((step as f64 - f64::from(steps) - ASIDE as f64) * 0.5));
+            *level = gray.level_at(at + inwards * ((step as f64 - f64::from(steps) - ASIDE as f64) * 0.5));
         }
         for (step, fall) in falls.iter_mut().enumerate() {
             *fall = levels[step] - levels[step + 2 * ASIDE];

@@ -6,15 +6,15 @@
 use nalgebra::SMatrix;
 
 use crate::gray::Gray;
-use crate::normal::{LANES, Normal, lanes};
-use crate::patch::{Cells, Patch, Seen};
+use crate::normal::{LANES, PixelEquations, lanes};
+use crate::patch::{PatchModel, TagCells, TagPatch};
 use crate::quads::Quad;
-use crate::tagmodel::{Model, UNKNOWNS, Unknowns, bent};
-use crate::vector::vectorized;
+use crate::tagmodel::{TagModel, TagUnknowns, UNKNOWNS, bend_at};
+use crate::vector::run_vectorized;
 
 /// A fitted tag.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fitted {
+pub(crate) struct FittedTag {
     pub(crate) corners: Quad,
     /// Standard deviation of each coordinate of each corner, pixels.
     pub(crate) sigma_px: [f64; 4],
@@ -25,7 +25,7 @@ pub(crate) struct Fitted {
     bare: f64,
 }
 
-impl Fitted {
+impl FittedTag {
     /// True if only a tag explains it: a requirement beside the code for dictionaries with so few bits that clutter contains codes.
     pub(crate) fn is_evident(&self) -> bool {
         self.misfit < CLEAR && self.bare > BARE
@@ -55,10 +55,10 @@ const WORST_PX: f64 = 0.5;
 const LIMITED: usize = 2;
 
 /// Fits a tag near a quadrangle. `None` if there is no tag.
-pub(crate) fn fit(gray: &Gray, cells: &Cells, quad: &Quad, noise: f64) -> Option<Fitted> {
-    let patch = Patch::new(gray, quad, noise)?;
-    let mut model = Model::start(*quad);
-    let mut seen = patch.seen(&model, cells)?;
+pub(crate) fn fit(gray: &Gray, cells: &TagCells, quad: &Quad, noise: f64) -> Option<FittedTag> {
+    let patch = TagPatch::new(gray, quad, noise)?;
+    let mut model = TagModel::start(*quad);
+    let mut seen = patch.blurred_model(&model, cells)?;
     let mut limit = f64::INFINITY;
     let mut sums = model.sums(&patch, &seen, limit);
     let mut damping = 1e-3;
@@ -67,9 +67,9 @@ pub(crate) fn fit(gray: &Gray, cells: &Cells, quad: &Quad, noise: f64) -> Option
         for k in 0..UNKNOWNS {
             damped[(k, k)] = damped[(k, k)] * (1.0 + damping) + 1e-9;
         }
-        let next = model.stepped(&damped.cholesky()?.solve(&sums.right));
+        let next = model.step_by(&damped.cholesky()?.solve(&sums.right));
         // The first step finds the shades.
-        let next_seen = if model.is_blank() { seen.clone() } else { patch.seen(&next, cells)? };
+        let next_seen = if model.is_blank() { seen.clone() } else { patch.blurred_model(&next, cells)? };
         let found = next.sums(&patch, &next_seen, limit);
         let moved = (0..4).map(|k| (next.corners[k] - model.corners[k]).norm()).fold(0.0, f64::max);
         if found.squares <= sums.squares {
@@ -86,12 +86,12 @@ pub(crate) fn fit(gray: &Gray, cells: &Cells, quad: &Quad, noise: f64) -> Option
             sums = model.sums(&patch, &seen, limit);
         }
     }
-    model.judged(&sums, quad, noise)
+    model.judge(&sums, quad, noise)
 }
 
-struct Sums {
+struct TagSums {
     normal: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
-    right: Unknowns,
+    right: TagUnknowns,
     squares: f64,
     /// Squares of the residuals of all pixels, and their number.
     left: f64,
@@ -99,12 +99,12 @@ struct Sums {
     kept: usize,
 }
 
-impl Model {
-    fn sums(&self, patch: &Patch, seen: &Seen, limit: f64) -> Sums {
-        let mut sums = vectorized(
+impl TagModel {
+    fn sums(&self, patch: &TagPatch, seen: &PatchModel, limit: f64) -> TagSums {
+        let mut sums = run_vectorized(
             #[inline(always)]
             || {
-                let mut adder = Adder::new(self, limit);
+                let mut adder = PixelAdder::new(self, limit);
                 let ([width, height], first) = (patch.size, patch.first_offset());
                 for row in 1..height - 1 {
                     for column in (1..width - 1).step_by(LANES) {
@@ -113,7 +113,7 @@ impl Model {
                         adder.add(patch, seen, (row * width + column, count), off);
                     }
                 }
-                adder.finished()
+                adder.finish_sums()
             },
         );
         let stiff = patch.variance / (BEND * BEND);
@@ -125,7 +125,7 @@ impl Model {
         sums
     }
 
-    fn judged(&self, sums: &Sums, quad: &Quad, noise: f64) -> Option<Fitted> {
+    fn judge(&self, sums: &TagSums, quad: &Quad, noise: f64) -> Option<FittedTag> {
         let half = 0.5 * (self.light - self.dark);
         let variance = sums.left / sums.kept.saturating_sub(UNKNOWNS).max(1) as f64;
         let left = (variance - noise * noise).max(0.0).sqrt();
@@ -144,14 +144,14 @@ impl Model {
             && moved < (0.06 * side).max(2.5)
             && bare > if misfit < CLEAR { PART } else { MOST_OF_IT }
             && sigma_px.iter().all(|it| *it < WORST_PX);
-        good.then_some(Fitted { corners: self.corners, sigma_px, blur_px: self.blur, misfit, bare })
+        good.then_some(FittedTag { corners: self.corners, sigma_px, blur_px: self.blur, misfit, bare })
     }
 }
 
 /// Sums over pixels: those near no edge between cells inform the shades alone, the last unknowns.
-struct Adder {
-    edge: Normal<UNKNOWNS>,
-    plain: Normal<SHADES>,
+struct PixelAdder {
+    edge: PixelEquations<UNKNOWNS>,
+    plain: PixelEquations<SHADES>,
     /// Numbers of the model.
     dark: f32,
     contrast: f32,
@@ -163,11 +163,11 @@ struct Adder {
     kept: usize,
 }
 
-impl Adder {
-    fn new(model: &Model, limit: f64) -> Self {
-        Adder {
-            edge: Normal::new(),
-            plain: Normal::new(),
+impl PixelAdder {
+    fn new(model: &TagModel, limit: f64) -> Self {
+        PixelAdder {
+            edge: PixelEquations::new(),
+            plain: PixelEquations::new(),
             dark: model.dark as f32,
             contrast: (model.light - model.dark) as f32,
             slope: [model.slope.x as f32, model.slope.y as f32],
@@ -181,7 +181,7 @@ impl Adder {
 
     /// Adds a number of pixels from one on, by its position relative to the middle.
     #[inline(always)]
-    fn add(&mut self, patch: &Patch, seen: &Seen, (at, count): (usize, usize), [x, y]: [f32; 2]) {
+    fn add(&mut self, patch: &TagPatch, seen: &PatchModel, (at, count): (usize, usize), [x, y]: [f32; 2]) {
         let width = patch.size[0];
         let counts = lanes(&seen.counts, at);
         let counted = counts[..count].iter().sum::<f32>() as usize;
@@ -224,7 +224,7 @@ impl Adder {
             let by_y = -0.5 * (down[k] - up[k]) * contrast;
             let (u, v) = (own_x[k], own_y[k]);
             let weights =
-                [(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v, bent([u, v], self.sides)];
+                [(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v, bend_at([u, v], self.sides)];
             for corner in 0..5 {
                 rows[2 * corner][k] = by_x * weights[corner];
                 rows[2 * corner + 1][k] = by_y * weights[corner];
@@ -235,9 +235,9 @@ impl Adder {
         self.edge.add(&mut rows, &mut residuals, count);
     }
 
-    fn finished(self) -> Sums {
-        let Adder { edge, plain, limit, count, kept, .. } = self;
-        let ((mut normal, mut right, mut left), plain) = (edge.finished(), plain.finished());
+    fn finish_sums(self) -> TagSums {
+        let PixelAdder { edge, plain, limit, count, kept, .. } = self;
+        let ((mut normal, mut right, mut left), plain) = (edge.into_equations(), plain.into_equations());
         let mut own = normal.fixed_view_mut::<SHADES, SHADES>(SHAPE, SHAPE);
         own += plain.0;
         let mut own = right.fixed_rows_mut::<SHADES>(SHAPE);
@@ -245,6 +245,6 @@ impl Adder {
         left += plain.2;
         // Without a limit no pixel exceeds it.
         let beyond = if count > kept { (count - kept) as f64 * limit * limit } else { 0.0 };
-        Sums { normal, right, squares: left + beyond, left, count, kept }
+        TagSums { normal, right, squares: left + beyond, left, count, kept }
     }
 }

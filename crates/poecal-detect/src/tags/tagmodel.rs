@@ -6,7 +6,7 @@ use crate::homography::Homography;
 use crate::quads::Quad;
 
 pub(crate) const UNKNOWNS: usize = 15;
-pub(crate) type Unknowns = SVector<f64, UNKNOWNS>;
+pub(crate) type TagUnknowns = SVector<f64, UNKNOWNS>;
 
 /// The margin beyond the corners of a tag, as a part of their distance from its middle, and additional pixels.
 const BEYOND: f64 = 0.25;
@@ -16,7 +16,7 @@ const SIGNS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Position, sharpness and shades of a tag in a picture.
 #[derive(Clone, Copy)]
-pub(crate) struct Model {
+pub(crate) struct TagModel {
     pub(crate) corners: Quad,
     pub(crate) bend: Vector2<f64>,
     pub(crate) blur: f64,
@@ -25,14 +25,14 @@ pub(crate) struct Model {
     pub(crate) slope: Vector2<f64>,
 }
 
-impl Model {
+impl TagModel {
     pub(crate) fn start(corners: Quad) -> Self {
         let slope = Vector2::zeros();
-        Model { corners, bend: Vector2::zeros(), blur: 1.1, dark: 0.0, light: 0.0, slope }
+        TagModel { corners, bend: Vector2::zeros(), blur: 1.1, dark: 0.0, light: 0.0, slope }
     }
 
     /// Map from the picture to the tag, without the bend.
-    pub(crate) fn back(&self) -> Option<Homography> {
+    pub(crate) fn to_tag(&self) -> Option<Homography> {
         Homography::of_corners(&self.corners, &SIGNS.map(Vector2::from))
     }
 
@@ -67,7 +67,7 @@ impl Model {
         [(b - a + c - d).norm_squared() * 0.25, (d - a + c - b).norm_squared() * 0.25]
     }
 
-    pub(crate) fn stepped(&self, step: &Unknowns) -> Self {
+    pub(crate) fn step_by(&self, step: &TagUnknowns) -> Self {
         let longest = (0..8).map(|k| step[k].abs()).fold(0.0, f64::max);
         let part = if self.is_blank() { 0.0 } else { 1.0 / (longest / 1.2).max(1.0) };
         let mut next = *self;
@@ -84,21 +84,25 @@ impl Model {
 }
 
 /// Map from the picture to the tag, by a homography and a bend: relative to the middle of a patch.
-pub(crate) struct Bent {
+pub(crate) struct BentTagMap {
     back: [[f32; 3]; 3],
     bend: [f32; 2],
     sides: [f32; 2],
 }
 
-impl Bent {
-    pub(crate) fn new(model: &Model, back: [[f32; 3]; 3]) -> Self {
+impl BentTagMap {
+    pub(crate) fn new(model: &TagModel, back: [[f32; 3]; 3]) -> Self {
         let sides = model.squared_sides();
-        Bent { back, bend: [model.bend.x as f32, model.bend.y as f32], sides: sides.map(|it| it as f32) }
+        BentTagMap {
+            back,
+            bend: [model.bend.x as f32, model.bend.y as f32],
+            sides: sides.map(|it| it as f32),
+        }
     }
 
     /// Position on the tag without the bend, and 1 over the depth factor.
     #[inline(always)]
-    fn flat(&self, [x, y]: [f32; 2]) -> ([f32; 2], f32) {
+    fn flatten_place(&self, [x, y]: [f32; 2]) -> ([f32; 2], f32) {
         let [u, v, w] = self.back.map(|row| row[0] * x + row[1] * y + row[2]);
         let scale = 1.0 / w;
         ([u * scale, v * scale], scale)
@@ -108,9 +112,9 @@ impl Bent {
     /// is near.
     #[inline(always)]
     pub(crate) fn map(&self, [x, y]: [f32; 2]) -> ([f32; 2], [f32; 2], bool) {
-        let (first, front) = self.flat([x, y]);
-        let bent = bent(first, self.sides);
-        let ([u, v], scale) = self.flat([x - self.bend[0] * bent, y - self.bend[1] * bent]);
+        let (first, front) = self.flatten_place([x, y]);
+        let bent = bend_at(first, self.sides);
+        let ([u, v], scale) = self.flatten_place([x - self.bend[0] * bent, y - self.bend[1] * bent]);
         let [by_u, by_v, by_w] = self.back;
         let length = |row: [f32; 3], own: f32| {
             let (a, b) = (row[0] - own * by_w[0], row[1] - own * by_w[1]);
@@ -123,6 +127,6 @@ impl Bent {
 
 /// The bend at a point of the tag, by the squares of its sides: zero at corners.
 #[inline(always)]
-pub(crate) fn bent([x, y]: [f32; 2], sides: [f32; 2]) -> f32 {
+pub(crate) fn bend_at([x, y]: [f32; 2], sides: [f32; 2]) -> f32 {
     -(x * (1.0 - x) * sides[0] + y * (1.0 - y) * sides[1])
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use png::{BitDepth, ColorType, Encoder};
-use poecal_detect::Picture;
+use poecal_detect::GrayPicture;
 
 fn path(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
@@ -32,7 +32,7 @@ fn png(
 }
 
 fn levels(bytes: &[u8]) -> Vec<f32> {
-    Picture::decode(bytes, &path("given")).unwrap().gray.levels().to_vec()
+    GrayPicture::decode(bytes, &path("given")).unwrap().gray.levels().to_vec()
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn depths_and_colours_become_gray() {
     let samples: Vec<u8> = deep.iter().flat_map(|it| it.to_be_bytes()).collect();
     let file = path("deep.png");
     fs::write(&file, png([4, 2], (ColorType::Grayscale, BitDepth::Sixteen), &samples, |_| ())).unwrap();
-    let gray = Picture::open(&file).unwrap().gray;
+    let gray = GrayPicture::open(&file).unwrap().gray;
     let expected = 3001.0 * 13.0 * 255.0 / 65535.0;
     println!("{} of {expected}", gray.row(1)[3]);
     // The fraction of a 16-bit level stays, to single precision.
@@ -50,7 +50,7 @@ fn depths_and_colours_become_gray() {
     let samples = [200, 100, 50].repeat(9);
     fs::write(&file, png([3, 3], (ColorType::Rgb, BitDepth::Eight), &samples, |_| ())).unwrap();
     // 0.299 · 200 + 0.587 · 100 + 0.114 · 50 = 124.2, and OpenCV rounds.
-    assert_eq!(Picture::open(&file).unwrap().gray.row(0)[0], 124.0);
+    assert_eq!(GrayPicture::open(&file).unwrap().gray.row(0)[0], 124.0);
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn every_form_of_jpeg_is_read() {
         (include_bytes!("pictures/cmyk.jpg"), [28.0, 121.0, 126.0, 193.0]),
         (include_bytes!("pictures/ycck.jpg"), [205.0, 66.0, 198.0, 135.0]),
     ] {
-        let gray = Picture::decode(bytes, &path("given")).unwrap().gray;
+        let gray = GrayPicture::decode(bytes, &path("given")).unwrap().gray;
         assert_eq!((gray.width(), gray.height()), (32, 16));
         assert_eq!([(0, 0), (5, 31), (10, 3), (15, 16)].map(|(row, column)| gray.row(row)[column]), expected);
     }
@@ -151,7 +151,7 @@ fn a_picture_stands_upright() {
     ] {
         let file = path(&format!("turned{orientation}.jpg"));
         fs::write(&file, jpeg(orientation)).unwrap();
-        let picture = Picture::open(&file).unwrap();
+        let picture = GrayPicture::open(&file).unwrap();
         println!("{orientation}: {}", picture.turned);
         assert_eq!((picture.turned.degrees, picture.turned.mirrored), (degrees, mirrored));
         assert_eq!(picture.turned.is_turned(), orientation != 1);
@@ -178,7 +178,7 @@ fn a_png_stands_upright() {
         let mut writer = Encoder::with_info(&mut bytes, info).unwrap().write_header().unwrap();
         writer.write_image_data(&[0, 1, 2, 3, 4, 5]).unwrap();
         writer.finish().unwrap();
-        let picture = Picture::decode(&bytes, &path("given")).unwrap();
+        let picture = GrayPicture::decode(&bytes, &path("given")).unwrap();
         assert_eq!(picture.gray.levels(), expected.map(|it: u8| f32::from(it)), "{orientation}");
         assert_eq!(picture.gray.width(), if orientation < 5 { 3 } else { 2 });
     }
@@ -194,7 +194,7 @@ fn a_head_that_lies_takes_no_memory() {
     let at = jpeg.windows(2).position(|it| it == [0xff, 0xc0]).unwrap();
     jpeg[at + 5..at + 9].fill(0xff);
     for bytes in [lying, jpeg] {
-        let message = Picture::decode(&bytes, &path("given")).unwrap_err().to_string();
+        let message = GrayPicture::decode(&bytes, &path("given")).unwrap_err().to_string();
         assert!(message.contains(" pixels, expected at most 50000000 in all"), "{message}");
     }
 }
@@ -206,7 +206,7 @@ fn what_is_no_picture_is_told_with_its_path() {
     let half = path("half.jpg");
     fs::write(&half, &jpeg(1)[..120]).unwrap();
     for file in [file, half, path("missing.png"), PathBuf::from(env!("CARGO_TARGET_TMPDIR"))] {
-        let message = Picture::open(&file).unwrap_err().to_string();
+        let message = GrayPicture::open(&file).unwrap_err().to_string();
         println!("{message}");
         assert!(message.starts_with(&file.display().to_string()) && !message.contains('\n'));
     }

@@ -1,8 +1,8 @@
 //! Number and accuracy of the detected corners, in pictures with known truth.
 
 use nalgebra::Vector2;
-use poecal_detect::render::{Draw, Drawn};
-use poecal_detect::{Detector, Found};
+use poecal_detect::render::{DrawnScene, RandomScenes};
+use poecal_detect::{DetectedBoard, Detector};
 
 use poecal_testing::trials::trials;
 
@@ -18,7 +18,7 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    pub(crate) fn from_drawn_pictures(spec: &str, draw: &Draw, pictures: usize) -> Self {
+    pub(crate) fn from_drawn_pictures(spec: &str, draw: &RandomScenes, pictures: usize) -> Self {
         let detector = Detector::new(&spec.parse().unwrap());
         let mut tally = Tally::default();
         for number in 0..pictures {
@@ -35,12 +35,12 @@ impl Tally {
             tally.visible,
             tally.rms_px(),
             tally.farthest,
-            100.0 * tally.within()
+            100.0 * tally.share_within()
         );
         tally
     }
 
-    fn add(&mut self, found: &Found, drawn: &Drawn) {
+    fn add(&mut self, found: &DetectedBoard, drawn: &DrawnScene) {
         let last = drawn.truth.len() - 1;
         let off = |turn: bool| {
             let place = move |id: usize| drawn.truth[if turn { last - id } else { id }];
@@ -67,7 +67,7 @@ impl Tally {
         self.found as f64 / self.visible as f64
     }
 
-    pub(crate) fn within(&self) -> f64 {
+    pub(crate) fn share_within(&self) -> f64 {
         self.within as f64 / (2 * self.corners) as f64
     }
 }
@@ -76,46 +76,57 @@ impl Tally {
 fn corners_of_a_charuco_board() {
     let tally = Tally::from_drawn_pictures(
         "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
-        &Draw::default(),
+        &RandomScenes::default(),
         trials(40).at_least(10).count,
     );
     // Required figures of the detector: OpenCV finds 83 % with 0.076 px in such pictures.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.06 && tally.farthest < 1.0);
     // 68 % of a normal error, within the scatter of 700 numbers, and the smallest sigma, which is a floor.
-    assert!((0.60..0.78).contains(&tally.within()));
+    assert!((0.60..0.78).contains(&tally.share_within()));
 }
 
 #[test]
 fn corners_of_a_chessboard() {
-    let tally = Tally::from_drawn_pictures("chessboard:10x7:28mm", &Draw::default(), trials(40).at_least(10).count);
+    let tally = Tally::from_drawn_pictures(
+        "chessboard:10x7:28mm",
+        &RandomScenes::default(),
+        trials(40).at_least(10).count,
+    );
     // As above: OpenCV has 72 % and 0.12 px.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
-    assert!((0.60..0.78).contains(&tally.within()));
+    assert!((0.60..0.78).contains(&tally.share_within()));
 }
 
 #[test]
 fn corners_of_a_board_that_looks_the_same_from_both_ends() {
-    let tally = Tally::from_drawn_pictures("chessboard:8x6:30mm", &Draw::default(), trials(20).at_least(5).count);
+    let tally = Tally::from_drawn_pictures(
+        "chessboard:8x6:30mm",
+        &RandomScenes::default(),
+        trials(20).at_least(5).count,
+    );
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
 }
 
 #[test]
 fn corners_of_the_old_pattern() {
-    let tally =
-        Tally::from_drawn_pictures("charuco:7x6:30mm:22mm:DICT_4X4_50:legacy", &Draw::default(), trials(20).at_least(5).count);
+    let tally = Tally::from_drawn_pictures(
+        "charuco:7x6:30mm:22mm:DICT_4X4_50:legacy",
+        &RandomScenes::default(),
+        trials(20).at_least(5).count,
+    );
     // Markers leave only a fifth of a square plain: fewer pixels than on the first board.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.08 && tally.farthest < 1.0);
 }
 
 #[test]
 fn corners_of_dim_and_noisy_pictures() {
-    let draw = Draw {
+    let draw = RandomScenes {
         contrast: [22.0, 40.0],
         noise: [4.0, 6.0],
         blur_px: [1.5, 2.5],
         square_px: [60.0, 110.0],
         tilt_deg: [0.0, 45.0],
-        ..Draw::default()
+        ..RandomScenes::default()
     };
     for spec in ["charuco:7x5:36.195mm:18.256mm:DICT_6X6_250", "chessboard:10x7:28mm"] {
         let tally = Tally::from_drawn_pictures(spec, &draw, 6);
@@ -127,7 +138,7 @@ fn corners_of_dim_and_noisy_pictures() {
 #[test]
 fn corners_of_half_a_board() {
     let detector = Detector::new(&"charuco:7x5:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
-    let draw = Draw { covered_each: 0, ..Draw::default() };
+    let draw = RandomScenes { covered_each: 0, ..RandomScenes::default() };
     let (mut visible, mut seen) = (0, 0);
     for number in 0..trials(16).at_least(4).count {
         let drawn = draw.scene(detector.layout(), 5, number);
@@ -163,7 +174,7 @@ fn corners_of_half_a_board() {
 #[test]
 fn a_picture_takes_little_time() {
     let detector = Detector::new(&"charuco:7x5:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
-    let drawn = Draw::default().scene(detector.layout(), 11, 0);
+    let drawn = RandomScenes::default().scene(detector.layout(), 11, 0);
     let took = (0..3).map(|_| {
         let start = cpu_time::ThreadTime::now();
         detector.detect(&drawn.picture).unwrap();

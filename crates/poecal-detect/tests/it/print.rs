@@ -1,7 +1,7 @@
 //! Boards on paper: the detector finds the drawn board, and the files contain it.
 
-use poecal_detect::print::{Page, Rectangle, Sheet, Words};
-use poecal_detect::{Detector, Gray, Layout, Spec};
+use poecal_detect::print::{PaperSize, PrintSheet, Rectangle, SheetText};
+use poecal_detect::{BoardLayout, BoardSpec, Detector, Gray};
 
 const BOARDS: [&str; 17] = [
     "charuco:5x7:36mm:18mm:DICT_6X6_250",
@@ -23,12 +23,12 @@ const BOARDS: [&str; 17] = [
     "aprilgrid:4x7:25mm:0.25:25h9",
 ];
 
-fn sheet(spec: &str, page: &str) -> Sheet {
-    Sheet::new(&spec.parse().unwrap(), &page.parse().unwrap()).unwrap()
+fn sheet(spec: &str, page: &str) -> PrintSheet {
+    PrintSheet::new(&spec.parse().unwrap(), &page.parse().unwrap()).unwrap()
 }
 
 /// Area of words: a bar as high as capitals, darker than any print of them.
-fn bar(words: &Words) -> Rectangle {
+fn bar(words: &SheetText) -> Rectangle {
     let [x, y] = words.at_mm;
     let (length, high) = (words.length_mm, 0.72 * words.size_mm);
     if words.downwards {
@@ -39,7 +39,7 @@ fn bar(words: &Words) -> Rectangle {
 }
 
 /// The page as a picture: each pixel as dark as its covered share.
-fn picture(sheet: &Sheet, px_per_mm: f64) -> Gray {
+fn picture(sheet: &PrintSheet, px_per_mm: f64) -> Gray {
     let [width, height] = sheet.size_mm.map(|it| (it * px_per_mm).ceil() as usize);
     let mut levels = vec![235.0_f32; width * height];
     for it in sheet.rectangles.iter().copied().chain(sheet.words.iter().map(bar)) {
@@ -72,19 +72,20 @@ fn picture(sheet: &Sheet, px_per_mm: f64) -> Gray {
             }
         }
     }
-    Gray::new(width, height, levels).unwrap().blurred(0.7, 4.0)
+    Gray::new(width, height, levels).unwrap().blur(0.7, 4.0)
 }
 
 #[test]
 fn the_detector_finds_every_corner_of_what_is_drawn() {
     const PX_PER_MM: f64 = 3.3;
     for text in BOARDS {
-        let spec: Spec = text.parse().unwrap();
-        let layout = Layout::new(&spec);
+        let spec: BoardSpec = text.parse().unwrap();
+        let layout = BoardLayout::new(&spec);
         let sheet = sheet(text, "a4");
         let found = Detector::new(&spec).detect(&picture(&sheet, PX_PER_MM)).unwrap();
         // Loose tags are as many as fit on the page.
-        let markers = if matches!(spec, Spec::Tags(_)) { sheet.points() / 4 } else { layout.marker_count() };
+        let markers =
+            if matches!(spec, BoardSpec::Tags(_)) { sheet.points() / 4 } else { layout.marker_count() };
         assert_eq!((found.corners.len(), found.markers), (sheet.points(), markers), "{text}");
         let mut farthest = 0.0_f64;
         for corner in &found.corners {
@@ -98,7 +99,7 @@ fn the_detector_finds_every_corner_of_what_is_drawn() {
         println!("{text}: at most {farthest:.3} px");
         // Lattices of dots look the same turned, but the page is upright.
         let turns = text.starts_with("circles") && !text.ends_with("4x11:20mm:asymmetric");
-        let limit = if matches!(spec, Spec::Chessboard(_) | Spec::Charuco(_)) { 0.1 } else { 0.05 };
+        let limit = if matches!(spec, BoardSpec::Chessboard(_) | BoardSpec::Charuco(_)) { 0.1 } else { 0.05 };
         assert!(farthest < limit && found.turnable == turns, "{text}: {farthest} px");
     }
 }
@@ -111,7 +112,7 @@ fn the_legacy_pattern_of_even_rows_is_another_board() {
 }
 
 /// True if a rectangle has no point in common with another one.
-fn apart(one: &Rectangle, other: &Rectangle) -> bool {
+fn are_apart(one: &Rectangle, other: &Rectangle) -> bool {
     [0, 1].into_iter().any(|axis| {
         one.to_mm[axis] <= other.from_mm[axis] + 1e-9 || other.to_mm[axis] <= one.from_mm[axis] + 1e-9
     })
@@ -129,7 +130,7 @@ fn rulers_and_words_stand_between_board_and_edge() {
     let all = BOARDS.iter().flat_map(|spec| pages.map(|page| (*spec, page))).chain(tight);
     let mut drawn = 0;
     for (spec, page) in all {
-        let Ok(sheet) = Sheet::new(&spec.parse().unwrap(), &page.parse().unwrap()) else { continue };
+        let Ok(sheet) = PrintSheet::new(&spec.parse().unwrap(), &page.parse().unwrap()) else { continue };
         drawn += 1;
         let board = sheet.board;
         let middle = [0, 1].map(|axis| (board.from_mm[axis] + board.to_mm[axis]) - sheet.size_mm[axis]);
@@ -145,22 +146,22 @@ fn rulers_and_words_stand_between_board_and_edge() {
         // Names of loose tags are between them.
         assert!(names.is_empty() || spec.starts_with("tags"), "{spec} on {page}: words on the board");
         assert!(
-            names.iter().all(|name| sheet.rectangles.iter().all(|it| apart(name, it))),
+            names.iter().all(|name| sheet.rectangles.iter().all(|it| are_apart(name, it))),
             "{spec} on {page}"
         );
         for it in lines.chain(bars.iter().copied()) {
-            assert!(apart(&it, &board), "{spec} on {page}: {it:?} is on the board");
+            assert!(are_apart(&it, &board), "{spec} on {page}: {it:?} is on the board");
             let within =
                 (0..2).all(|axis| it.from_mm[axis] >= 3.5 && it.to_mm[axis] <= sheet.size_mm[axis] - 4.5);
             assert!(within, "{spec} on {page}: {it:?} is at the edge");
         }
         let bars: Vec<Rectangle> = bars.into_iter().chain(names).collect();
         for (at, one) in bars.iter().enumerate() {
-            assert!(bars[..at].iter().all(|other| apart(one, other)), "{spec} on {page}: words overlap");
+            assert!(bars[..at].iter().all(|other| are_apart(one, other)), "{spec} on {page}: words overlap");
         }
         let text: String = sheet.words.iter().map(|it| format!("{} ", it.text)).collect();
         assert!(text.is_ascii());
-        let stated: Spec = spec.parse().unwrap();
+        let stated: BoardSpec = spec.parse().unwrap();
         assert!(text.contains(&format!("--markers {stated}")), "{spec} on {page}: {text}");
         assert!(text.contains("100 mm") || page == "60x60mm", "{spec} on {page}");
     }
@@ -174,7 +175,7 @@ fn a_large_page_has_a_square_of_white_around_the_board() {
         from_mm: sheet.board.from_mm.map(|it| it - 26.9),
         to_mm: sheet.board.to_mm.map(|it| it + 26.9),
     };
-    assert!(sheet.words.iter().all(|it| apart(&bar(it), &board)));
+    assert!(sheet.words.iter().all(|it| are_apart(&bar(it), &board)));
 }
 
 #[test]
@@ -187,7 +188,7 @@ fn a_named_page_lies_as_the_board_does() {
 #[test]
 fn a_board_too_large_for_the_page_is_told_with_what_would_do() {
     let refused = |spec: &str, page: &str| {
-        Sheet::new(&spec.parse().unwrap(), &page.parse::<Page>().unwrap()).unwrap_err().to_string()
+        PrintSheet::new(&spec.parse().unwrap(), &page.parse::<PaperSize>().unwrap()).unwrap_err().to_string()
     };
     assert_eq!(
         refused("charuco:5x7:60mm:40mm:DICT_6X6_250", "a4"),
@@ -283,7 +284,7 @@ fn a_page_of_tags_has_as_many_as_fit() {
     assert_eq!((a4.points(), names.len(), names[0], names[8]), (4 * 9, 9, "tag0", "tag8"));
     // No more than exist.
     assert_eq!(sheet("tags:16h5:20mm", "3000x2000mm").points(), 4 * 30);
-    let refused = Sheet::new(&"tags:36h11:250mm".parse().unwrap(), &"a4".parse().unwrap()).unwrap_err();
+    let refused = PrintSheet::new(&"tags:36h11:250mm".parse().unwrap(), &"a4".parse().unwrap()).unwrap_err();
     assert!(
         refused.to_string().contains("at least 270 x 370 mm")
             && refused.to_string().ends_with("tags of at most 190 mm"),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use poecal_detect::{Detector, Picture};
+use poecal_detect::{Detector, GrayPicture};
 
 /// Corners by their picture: number, column, row.
 type Known = BTreeMap<String, Vec<(usize, f64, f64)>>;
@@ -18,7 +18,7 @@ fn folder() -> Option<PathBuf> {
 }
 
 /// Reads a table by the columns of the picture, the corner, u and v.
-fn known(file: &Path, [picture, corner, u, v]: [&str; 4]) -> Known {
+fn read_known(file: &Path, [picture, corner, u, v]: [&str; 4]) -> Known {
     let text = fs::read_to_string(file).unwrap();
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -37,10 +37,14 @@ fn known(file: &Path, [picture, corner, u, v]: [&str; 4]) -> Known {
 }
 
 /// Number of known corners that were found, number of all, and RMS distance of those that agree within a pixel.
-fn compared(detector: &Detector, known: &Known, picture: impl Fn(&str) -> PathBuf) -> (usize, usize, f64) {
+fn compare_corners(
+    detector: &Detector,
+    known: &Known,
+    picture: impl Fn(&str) -> PathBuf,
+) -> (usize, usize, f64) {
     let (mut both, mut all, mut squares, mut near) = (0, 0, 0.0, 0);
     for (name, own) in known {
-        let gray = Picture::open(&picture(name)).unwrap().gray;
+        let gray = GrayPicture::open(&picture(name)).unwrap().gray;
         let found = match detector.detect(&gray) {
             Ok(found) => found,
             Err(reason) => {
@@ -72,9 +76,10 @@ fn compared(detector: &Detector, known: &Known, picture: impl Fn(&str) -> PathBu
 fn the_charuco_board_before_a_fixed_camera() {
     let Some(folder) = folder() else { return };
     let folder = folder.join("handeye_images/charuco_static_camera");
-    let known = known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
+    let known = read_known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
     let detector = Detector::new(&"charuco:5x7:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
-    let (both, all, rms_px) = compared(&detector, &known, |name| folder.join("images_gray_jpeg").join(name));
+    let (both, all, rms_px) =
+        compare_corners(&detector, &known, |name| folder.join("images_gray_jpeg").join(name));
     // OpenCV has 294; both are off by some 0.07 px because of each other's windows.
     assert!(both >= 280 && all >= 370 && rms_px < 0.15);
 }
@@ -84,11 +89,11 @@ fn the_charuco_board_before_a_fixed_camera() {
 fn the_dots_before_a_camera_on_an_arm() {
     let Some(folder) = folder() else { return };
     let folder = folder.join("handeye_images/circlegrid_eye_in_hand");
-    let known = known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
+    let known = read_known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
     let detector = Detector::new(&"circles:10x10:25.4mm".parse().unwrap());
     let (mut both, mut squares, mut near) = (0, 0.0, 0);
     for (name, own) in &known {
-        let gray = Picture::open(&folder.join("images").join(name)).unwrap().gray;
+        let gray = GrayPicture::open(&folder.join("images").join(name)).unwrap().gray;
         let Ok(found) = detector.detect(&gray) else { continue };
         // A square grid looks the same at each quarter turn; the known rows count upwards.
         let turned = |id: usize, turns: usize| {
@@ -96,7 +101,7 @@ fn the_dots_before_a_camera_on_an_arm() {
             own.iter().find(|it| it.0 == y * 10 + x)
         };
         let offs = |turns: usize| -> Vec<f64> {
-            let off = |it: &poecal_detect::Corner| {
+            let off = |it: &poecal_detect::DetectedCorner| {
                 let (_, u, v) = turned(it.id, turns)?;
                 Some((u - it.u_px).hypot(v - it.v_px))
             };
@@ -123,8 +128,9 @@ fn the_chessboards_before_two_arms() {
     let detector = Detector::new(&"chessboard:10x7:27mm".parse().unwrap());
     for (set, least) in [("ur10e_eye_in_hand", 1240), ("ur3e_eye_in_hand", 1500)] {
         let folder = folder.join(set);
-        let known = known(&folder.join("pixels.csv"), ["image", "target", "u_subpix[px]", "v_subpix[px]"]);
-        let (both, _, rms_px) = compared(&detector, &known, |name| {
+        let known =
+            read_known(&folder.join("pixels.csv"), ["image", "target", "u_subpix[px]", "v_subpix[px]"]);
+        let (both, _, rms_px) = compare_corners(&detector, &known, |name| {
             folder.join("images").join(name.replace("ur10e/", "measurements-2023-02-07/"))
         });
         // Observed: 0.09 and 0.11 px. OpenCV's corners scatter by 0.10 and 0.07 px about a smooth map, ours by 0.09 and 0.04.

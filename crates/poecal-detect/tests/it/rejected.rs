@@ -1,8 +1,8 @@
 //! Pictures without the board: no corner, the reason, and the suggested board.
 
 use nalgebra::Vector2;
-use poecal_detect::render::{Draw, Random, clutter, finished};
-use poecal_detect::{Detector, Gray, Layout, Rejected};
+use poecal_detect::render::{RandomGenerator, RandomScenes, clutter, finish_picture};
+use poecal_detect::{BoardLayout, Detector, Gray, RejectionReason};
 
 use poecal_testing::trials::trials;
 
@@ -17,8 +17,8 @@ fn detector(spec: &str) -> Detector {
     Detector::new(&spec.parse().unwrap())
 }
 
-fn drawn(spec: &str, draw: &Draw, number: usize) -> Gray {
-    draw.scene(&Layout::new(&spec.parse().unwrap()), 3, number).picture
+fn draw_picture(spec: &str, draw: &RandomScenes, number: usize) -> Gray {
+    draw.scene(&BoardLayout::new(&spec.parse().unwrap()), 3, number).picture
 }
 
 #[test]
@@ -26,9 +26,14 @@ fn no_corner_where_there_is_no_board() {
     let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let pictures = trials(24).at_least(6).count as u64;
     for number in 0..pictures {
-        let mut random = Random::new(40_000 + number);
+        let mut random = RandomGenerator::new(40_000 + number);
         let background = clutter([1280, 800], &mut random);
-        let picture = finished(background, random.uniform(0.4, 1.6), random.uniform(1.0, 6.0), &mut random);
+        let picture = finish_picture(
+            background,
+            random.draw_uniform(0.4, 1.6),
+            random.draw_uniform(1.0, 6.0),
+            &mut random,
+        );
         for detector in &detectors {
             let found = detector.detect(&picture);
             assert!(found.is_err(), "picture {number}: {found:?}");
@@ -53,7 +58,7 @@ fn no_corner_on_another_board() {
         "circles:5x11:20mm:asymmetric",
     ];
     for (number, other) in others.into_iter().enumerate() {
-        let picture = drawn(other, &Draw::default(), number);
+        let picture = draw_picture(other, &RandomScenes::default(), number);
         // Dots and tags are sought in every second one.
         for detector in
             detectors.iter().enumerate().filter(|it| it.0 < 2 || (it.0 + number) % 2 == 0).map(|it| it.1)
@@ -75,7 +80,7 @@ fn dots_at(places: impl Iterator<Item = [i32; 2]>) -> Gray {
         130.0 + 140.0 * (nearest - 0.42 * UNIT_PX).clamp(-0.5, 0.5)
     };
     let sharp = Gray::new(400, 460, (0..400 * 460).map(|at| level(at) as f32).collect()).unwrap();
-    finished(sharp, 0.8, 2.0, &mut Random::new(1))
+    finish_picture(sharp, 0.8, 2.0, &mut RandomGenerator::new(1))
 }
 
 #[test]
@@ -93,7 +98,7 @@ fn dots_that_go_on_are_no_board() {
 
 #[test]
 fn what_the_board_may_be_is_suggested() {
-    let draw = Draw { covered_each: 0, ..Draw::default() };
+    let draw = RandomScenes { covered_each: 0, ..RandomScenes::default() };
     for (stated, shown) in [
         ("charuco:5x7:36mm:18mm:DICT_6X6_250", "charuco:7x5:36mm:18mm:DICT_6X6_250"),
         ("charuco:7x6:30mm:22mm:DICT_4X4_50", "charuco:7x6:30mm:22mm:DICT_4X4_50:legacy"),
@@ -110,7 +115,7 @@ fn what_the_board_may_be_is_suggested() {
     ] {
         // One of the first two is too far away for small markers.
         let count = if shown.starts_with('c') && shown.contains("DICT") { 3 } else { 2 };
-        let pictures: Vec<Gray> = (0..count).map(|number| drawn(shown, &draw, number)).collect();
+        let pictures: Vec<Gray> = (0..count).map(|number| draw_picture(shown, &draw, number)).collect();
         let detector = detector(stated);
         assert!(pictures.iter().all(|it| detector.detect(it).is_err()));
         let suggestion = detector.suggest(&pictures.iter().collect::<Vec<_>>()).unwrap();
@@ -126,40 +131,45 @@ fn what_the_board_may_be_is_suggested() {
 fn the_reason_is_told() {
     let detector = detector(CHARUCO);
     let reason = |picture: &Gray| detector.detect(picture).unwrap_err();
-    let draw = Draw { covered_each: 0, square_px: [60.0, 110.0], ..Draw::default() };
-    let picture = drawn(CHARUCO, &draw, 0);
+    let draw = RandomScenes { covered_each: 0, square_px: [60.0, 110.0], ..RandomScenes::default() };
+    let picture = draw_picture(CHARUCO, &draw, 0);
     let changed = |change: &dyn Fn(f32) -> f32| {
         let levels = picture.levels().iter().map(|it| change(*it).clamp(0.0, 255.0).round()).collect();
         Gray::new(picture.width(), picture.height(), levels).unwrap()
     };
     let dark = reason(&changed(&|it| it * 0.02));
     let white = reason(&changed(&|it| it * 20.0 + 100.0));
-    let blurred = reason(&picture.blurred(25.0, 3.0));
+    let blurred = reason(&picture.blur(25.0, 3.0));
     println!("{dark}; {white}; {blurred}");
-    assert!(matches!(dark, Rejected::Dark(_)) && matches!(white, Rejected::Overexposed(_)));
-    assert!(matches!(blurred, Rejected::Blurred(_)));
+    assert!(matches!(dark, RejectionReason::Dark(_)) && matches!(white, RejectionReason::Overexposed(_)));
+    assert!(matches!(blurred, RejectionReason::Blurred(_)));
     let chessboard = Detector::new(&CHESSBOARD.parse().unwrap());
-    let draw = Draw { covered_each: 0, square_px: [60.0, 80.0], tilt_deg: [0.0, 10.0], ..Draw::default() };
-    let picture = drawn(CHESSBOARD, &draw, 0);
+    let draw = RandomScenes {
+        covered_each: 0,
+        square_px: [60.0, 80.0],
+        tilt_deg: [0.0, 10.0],
+        ..RandomScenes::default()
+    };
+    let picture = draw_picture(CHESSBOARD, &draw, 0);
     let corners = chessboard.detect(&picture).unwrap().corners;
     // Only the upper half of it.
     let cut = (corners.iter().map(|it| it.v_px).sum::<f64>() / corners.len() as f64) as usize;
     let levels = picture.levels()[..cut * picture.width()].to_vec();
     let part = chessboard.detect(&Gray::new(picture.width(), cut, levels).unwrap()).unwrap_err();
     println!("{part}");
-    assert!(matches!(part, Rejected::Few(_)));
+    assert!(matches!(part, RejectionReason::Few(_)));
 }
 
 #[test]
 fn any_picture_is_borne() {
     let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
-    let mut random = Random::new(1);
+    let mut random = RandomGenerator::new(1);
     for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)]
     {
         for kind in 0..4 {
             let levels = (0..width * height).map(|at| match kind {
                 0 => 0.0,
-                1 => random.uniform(0.0, 255.0) as f32,
+                1 => random.draw_uniform(0.0, 255.0) as f32,
                 2 => {
                     if (at % width / 9 + at / width / 9) % 2 == 0 {
                         0.0
@@ -167,7 +177,7 @@ fn any_picture_is_borne() {
                         255.0
                     }
                 }
-                _ => random.uniform(-1e30, 1e30) as f32,
+                _ => random.draw_uniform(-1e30, 1e30) as f32,
             });
             let picture = Gray::new(width, height, levels.collect()).unwrap();
             for detector in &detectors {

@@ -4,9 +4,9 @@
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::direction::{Cause, Direction};
-use super::excitation::{Excitation, Turning};
+use super::excitation::{Excitation, ToolTurning};
 use super::open_offsets::own_offsets;
-use super::setup::Setup;
+use super::setup::AnalysisSetup;
 use super::spectrum::Spectrum;
 use super::subspace;
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, Unit};
@@ -29,7 +29,7 @@ pub(crate) enum Degree {
 
 /// Descriptions of the undetermined, or of the weakly determined, directions.
 pub(crate) fn explain(
-    setup: &Setup<'_>,
+    setup: &AnalysisSetup<'_>,
     excitation: &Excitation,
     spectrum: &Spectrum,
     degree: Degree,
@@ -44,7 +44,8 @@ pub(crate) fn explain(
         return Vec::new();
     }
     let space = spectrum.vectors.columns(first, count).into_owned();
-    let mut rules = Rules { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
+    let mut rules =
+        ExplainedDirections { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
     // Offsets beside screws are a structural kernel, reported as such.
     let own = own_offsets(setup);
     let offsets = rules.places(|parameter| {
@@ -52,7 +53,7 @@ pub(crate) fn explain(
         term.is_some_and(|it| it.term != Term::OFFSET || own.iter().all(|(joint, _)| *joint != it.joint))
     });
     rules.take(&offsets);
-    rules.unseen();
+    rules.explain_unseen_joints();
     rules.size();
     rules.stood_still();
     rules.too_few();
@@ -61,13 +62,13 @@ pub(crate) fn explain(
     rules.moved_together();
     rules.small_motion();
     rules.dependent_motion();
-    rules.others();
+    rules.explain_other_directions();
     rules.found
 }
 
 /// Directions to be explained, and the descriptions found so far.
-pub(crate) struct Rules<'a> {
-    pub(crate) setup: &'a Setup<'a>,
+pub(crate) struct ExplainedDirections<'a> {
+    pub(crate) setup: &'a AnalysisSetup<'a>,
     pub(crate) excitation: &'a Excitation,
     pub(crate) spectrum: &'a Spectrum,
     pub(crate) degree: Degree,
@@ -76,13 +77,13 @@ pub(crate) struct Rules<'a> {
     pub(crate) found: Vec<Direction>,
 }
 
-impl Rules<'_> {
+impl ExplainedDirections<'_> {
     /// Removes the dimensions that would be determined if these directions were known, and returns their number.
     pub(crate) fn take(&mut self, directions: &[Vec<f64>]) -> usize {
         if self.unexplained.ncols() == 0 {
             return 0;
         }
-        let (left, taken) = subspace::without(&self.unexplained, directions);
+        let (left, taken) = subspace::remove_directions(&self.unexplained, directions);
         self.unexplained = left;
         taken
     }
@@ -234,7 +235,7 @@ impl Rules<'_> {
         let description = format!(
             "{targets} on {axes} of {} (within {} mm), so {tilt} {words}; mount {one} off {off}",
             self.names(&joints),
-            rounded(away_m * 1e3)
+            round_figure(away_m * 1e3)
         );
         self.add(Cause::PointOnAxis, &joints, directions, description);
     }
@@ -254,9 +255,11 @@ impl Rules<'_> {
 
     fn orientation(&mut self) {
         let directions: Vec<Vec<f64>> = match self.excitation.turning {
-            Turning::Freely => return,
-            Turning::Not => Matrix3::identity().column_iter().map(|u| self.shift(&u.into_owned())).collect(),
-            Turning::About(direction) => vec![self.shift(&direction)],
+            ToolTurning::Freely => return,
+            ToolTurning::Not => {
+                Matrix3::identity().column_iter().map(|u| self.shift(&u.into_owned())).collect()
+            }
+            ToolTurning::About(direction) => vec![self.shift(&direction)],
         };
         let before = self.unexplained.ncols();
         let mut taken = self.take(&directions);
@@ -264,7 +267,7 @@ impl Rules<'_> {
             return;
         }
         let words = self.degree_words("cannot be separated", true, &directions);
-        let (cause, description) = if self.excitation.turning == Turning::Not {
+        let (cause, description) = if self.excitation.turning == ToolTurning::Not {
             let tool = "the tool kept one orientation: its place on the last link and where the axes stand";
             (Cause::OneOrientation, format!("{tool} {words}"))
         } else {
@@ -360,8 +363,8 @@ impl Rules<'_> {
             let directions = self.take(&screw);
             if directions > 0 {
                 let by = match joints[joint].kind {
-                    JointKind::Revolute => format!("{} deg", rounded(ranges[joint].to_degrees())),
-                    JointKind::Prismatic => format!("{} mm", rounded(ranges[joint] * 1e3)),
+                    JointKind::Revolute => format!("{} deg", round_figure(ranges[joint].to_degrees())),
+                    JointKind::Prismatic => format!("{} mm", round_figure(ranges[joint] * 1e3)),
                 };
                 let part = if directions < screw.len() { "part of " } else { "" };
                 let words = self.degree_words("is lost in the noise", false, &screw);
@@ -386,7 +389,7 @@ pub(crate) fn joint_of(parameter: &Parameter) -> Option<usize> {
 }
 
 /// A figure with about two digits.
-fn rounded(value: f64) -> String {
+fn round_figure(value: f64) -> String {
     if value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
 }
 

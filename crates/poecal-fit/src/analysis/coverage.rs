@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{Packed, Session};
-use poecal_model::robot::{JointKind, Limits, Robot};
+use crate::state::{PackedValues, Session};
+use poecal_model::robot::{JointKind, JointLimits, Robot};
 use poecal_numerics::threads;
 
 /// Rows of one work item.
@@ -54,7 +54,7 @@ impl JointCoverage {
     #[must_use]
     pub fn is_of_a_turn(&self, kind: JointKind) -> bool {
         let span = self.limit_min.zip(self.limit_max).map(|(least, most)| most - least);
-        kind == JointKind::Revolute && span.is_some_and(|span| span > Limits::TURN_RAD)
+        kind == JointKind::Revolute && span.is_some_and(|span| span > JointLimits::TURN_RAD)
     }
 
     /// True if a value is in the sampled range; for a revolute joint also after whole turns.
@@ -85,7 +85,7 @@ pub fn coverage(session: &Session<'_>, rows: &[u32]) -> Vec<JointCoverage> {
         .enumerate()
         .map(|(index, (joint, sampled))| {
             let limits = joint.limits.filter(|limits| {
-                joint.kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M
+                joint.kind == JointKind::Revolute || limits.upper - limits.lower < JointLimits::PLACEHOLDER_M
             });
             let turns_on = joint.kind == JointKind::Revolute
                 && limits.is_none_or(|it| it.upper - it.lower > std::f64::consts::TAU);
@@ -110,7 +110,7 @@ const GAP_ON_CIRCLE: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Smallest and largest value of a joint that turns without end, where 350° and 10° are 20° apart. A gap on the circle counts if it exceeds a
 /// right angle and the rest of a turn outside the values. The range then begins behind it.
-fn on_circle(packed: &Packed, rows: &[u32], joint: usize, (least, most): (f64, f64)) -> (f64, f64) {
+fn on_circle(packed: &PackedValues, rows: &[u32], joint: usize, (least, most): (f64, f64)) -> (f64, f64) {
     use std::f64::consts::TAU;
     let outside = (TAU - (most - least)).max(0.0);
     if outside > TAU / 2.0 {
@@ -146,7 +146,7 @@ fn on_circle(packed: &Packed, rows: &[u32], joint: usize, (least, most): (f64, f
 }
 
 /// Share of a joint's sampled range that only isolated values reach: at each end at most a fiftieth of the rows, beyond a gap.
-fn isolated_share(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
+fn isolated_share(packed: &PackedValues, rows: &[u32], joint: usize) -> f64 {
     const FEW: usize = 50;
     const GAP: f64 = 0.15;
     let mut values: Vec<f64> = rows.iter().map(|&row| packed.joint_values(row as usize)[joint]).collect();
@@ -189,7 +189,7 @@ pub fn ranges(session: &Session<'_>, rows: &[u32]) -> Vec<(f64, f64)> {
 }
 
 /// True if the joint values of some readings are all within the sampled ranges.
-pub fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
+pub fn is_within_ranges(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
     let indices = robot.reading_indices();
     robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
         coverage.contains(joint.kind, joint.reading.value(readings[index]))
@@ -209,7 +209,7 @@ pub fn within_sampled(robot: &Robot, coverages: &[&[JointCoverage]]) -> Robot {
             others.iter().fold(one, |(min, max), it| (min.max(it.sampled_min), max.min(it.sampled_max)));
         let (lower, upper) = if both.0 <= both.1 { both } else { one };
         if lower <= upper {
-            joint.limits = Some(Limits { lower, upper });
+            joint.limits = Some(JointLimits { lower, upper });
         }
     }
     robot

@@ -69,9 +69,9 @@ impl Cause {
 ///
 /// ```
 /// # use poecal_fit::analysis::{PlannedSession, identify};
-/// # use poecal_model::{measurement::Kind, simulate::{Simulation, elbow}};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
-/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
+/// # use poecal_model::{measurement::SessionKind, simulate::{Simulation, elbow}};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
+/// let planned = PlannedSession { kind: SessionKind::POINT, ..PlannedSession::default() };
 /// let structural = identify(&elbow(), made.data.all_readings(), &planned)?.identifiability.structural;
 /// // Points of a tracker that stands anywhere do not determine the base frame: a choice that changes no prediction.
 /// assert!(structural.iter().any(|direction| direction.description.contains("base")));
@@ -87,10 +87,10 @@ pub struct Direction {
     #[serde(default)]
     pub cause: Cause,
     /// Number of independent directions.
-    #[serde(default = "one")]
+    #[serde(default = "default_count")]
     pub directions: usize,
 }
 
-fn one() -> usize {
+fn default_count() -> usize {
     1
 }

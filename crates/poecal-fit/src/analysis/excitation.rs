@@ -6,10 +6,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::coverage::ranges;
 use super::direction::{Cause, Direction};
-use super::setup::Setup;
+use super::setup::AnalysisSetup;
 use super::subspace;
 use crate::parameters::Parameter;
-use crate::state::{Chain, Linkage, Sight, sample_rows};
+use crate::state::{Linkage, RowChain, Sight, sample_rows};
 use poecal_model::robot::JointKind;
 use poecal_numerics::linalg;
 
@@ -29,7 +29,7 @@ const ON_AXIS: f64 = 0.02;
 
 /// Turning of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Turning {
+pub(crate) enum ToolTurning {
     /// No turning.
     Not,
     /// About one direction only, in the axes of the last link.
@@ -51,7 +51,7 @@ pub(crate) struct Excitation {
     /// Groups of joints that moved only together.
     pub(crate) together: Vec<Vec<usize>>,
     /// Turning of the tool.
-    pub(crate) turning: Turning,
+    pub(crate) turning: ToolTurning,
     /// Mean rotation of the last link's frame in the device's axes.
     pub(crate) mean_turn: Matrix3<f64>,
     /// For each revolute joint whose axis always passes through all targets: their largest distance from it, metres.
@@ -67,7 +67,7 @@ pub(crate) struct Excitation {
 }
 
 impl Excitation {
-    pub(crate) fn new(setup: &Setup<'_>) -> Self {
+    pub(crate) fn new(setup: &AnalysisSetup<'_>) -> Self {
         let joints = &setup.session.robot.joints;
         let ranges: Vec<f64> =
             ranges(&setup.session, setup.rows).iter().map(|(a, b)| (b - a).max(0.0)).collect();
@@ -79,14 +79,14 @@ impl Excitation {
                 JointKind::Prismatic => range <= STILL_M,
             })
             .collect();
-        let (seen_joints, last_joint) = passed(setup);
+        let (seen_joints, last_joint) = passed_joints(setup);
         let mut found = Excitation {
             seen_joints,
             last_joint,
-            together: together(setup, &still),
+            together: joint_groups(setup, &still),
             parallel: vec![true; joints.len() * joints.len()],
             on_axis_m: vec![None; joints.len()],
-            turning: Turning::Freely,
+            turning: ToolTurning::Freely,
             mean_turn: Matrix3::zeros(),
             ranges,
             still,
@@ -105,10 +105,10 @@ impl Excitation {
         joints.iter().all(|a| joints.iter().all(|b| self.parallel.get(a * n + b).copied().unwrap_or(false)))
     }
 
-    fn look_at_geometry(&mut self, setup: &Setup<'_>) {
+    fn look_at_geometry(&mut self, setup: &AnalysisSetup<'_>) {
         let n = self.still.len();
         let linkage = Linkage::new(setup.estimate);
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         let rows = sample_rows(setup.rows, SAMPLE);
         let mut away_m = vec![0.0_f64; n];
         let mut is_seen = vec![false; n];
@@ -140,11 +140,11 @@ impl Excitation {
         }
         // If the chains differ, the last links turn each in a manner of its own.
         let one_way = self.last_joint.is_some();
-        self.turning = if one_way { turning(&self.mean_turn) } else { Turning::Freely };
+        self.turning = if one_way { turning_of_mean(&self.mean_turn) } else { ToolTurning::Freely };
     }
 
     /// Counts the numbers measured in distinct configurations, until there are enough. Rows within the jitter of encoders are repeats.
-    fn count(&mut self, setup: &Setup<'_>) {
+    fn count(&mut self, setup: &AnalysisSetup<'_>) {
         let unknowns = setup.layout.dim();
         let step = |joint: usize| match setup.session.robot.joints.get(joint).map(|joint| joint.kind) {
             Some(JointKind::Prismatic) => STILL_M,
@@ -169,7 +169,7 @@ impl Excitation {
     }
 
     /// Targets, of several, that were seen only once.
-    pub(crate) fn seen_once(&self, setup: &Setup<'_>) -> Vec<Direction> {
+    pub(crate) fn seen_once(&self, setup: &AnalysisSetup<'_>) -> Vec<Direction> {
         let mut found = Vec::new();
         if self.seen.len() < 2 {
             return found;
@@ -202,7 +202,7 @@ impl Excitation {
 }
 
 /// Joints on the kinematic chains of the rows, and the last joint of a single chain.
-fn passed(setup: &Setup<'_>) -> (Vec<bool>, Option<usize>) {
+fn passed_joints(setup: &AnalysisSetup<'_>) -> (Vec<bool>, Option<usize>) {
     let tree = &setup.estimate.tree;
     let mut seen = vec![false; tree.kinds().len()];
     let mut ways = BTreeMap::new();
@@ -220,7 +220,7 @@ fn passed(setup: &Setup<'_>) -> (Vec<bool>, Option<usize>) {
 }
 
 /// A target by name.
-pub(crate) fn target_name(setup: &Setup<'_>, target: usize) -> String {
+pub(crate) fn target_name(setup: &AnalysisSetup<'_>, target: usize) -> String {
     match setup.session.data.targets.get(target).and_then(Option::as_deref) {
         Some(name) => format!("target {name}"),
         None => "the tip".to_owned(),
@@ -228,19 +228,19 @@ pub(crate) fn target_name(setup: &Setup<'_>, target: usize) -> String {
 }
 
 /// Turning of rotations with this mean R̄: a direction u is kept if `uᵀ(I - R̄ᵀR̄)u` vanishes (theory.md §7, `one_turning_direction`).
-fn turning(mean: &Matrix3<f64>) -> Turning {
+fn turning_of_mean(mean: &Matrix3<f64>) -> ToolTurning {
     let spread = Matrix3::identity() - mean.transpose() * mean;
     let upper: Vec<f64> = (0..9).map(|k| spread[(k / 3, k % 3)]).collect();
     let (values, vectors) = linalg::symmetric_eigen(&upper, 3);
     match values.iter().filter(|&&value| value < ONE_ORIENTATION).count() {
-        0 => Turning::Freely,
-        1 => Turning::About(Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)])),
-        _ => Turning::Not,
+        0 => ToolTurning::Freely,
+        1 => ToolTurning::About(Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)])),
+        _ => ToolTurning::Not,
     }
 }
 
 /// Groups of joints with a combination of values that stays constant while they move.
-fn together(setup: &Setup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
+fn joint_groups(setup: &AnalysisSetup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
     let moved: Vec<usize> = (0..still.len()).filter(|&joint| !still[joint]).collect();
     let rows = sample_rows(setup.rows, 10 * SAMPLE);
     let k = moved.len();
@@ -267,7 +267,7 @@ fn together(setup: &Setup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
     let (values, vectors) = linalg::symmetric_eigen(&correlation, k);
     let tied = values.iter().take_while(|&&value| value < TOGETHER * TOGETHER).count();
     let mut groups: Vec<BTreeSet<usize>> = Vec::new();
-    for relation in subspace::sparse(&vectors.columns(0, tied).into_owned()) {
+    for relation in subspace::sparse_basis(&vectors.columns(0, tied).into_owned()) {
         let mut group: BTreeSet<usize> =
             (0..k).filter(|&i| relation[i].abs() > 0.1).map(|i| moved[i]).collect();
         groups.retain(|other| {

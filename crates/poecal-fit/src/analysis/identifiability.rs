@@ -7,22 +7,22 @@ use super::direction::{Cause, Direction};
 use super::excitation::Excitation;
 use super::observability::Observability;
 use super::open_offsets::open_offsets;
-use super::setup::Setup;
+use super::setup::AnalysisSetup;
 use super::spectrum::{PLAUSIBLE, ROUNDING, Spectrum, WEAK, rounding};
 use crate::parameters::Parameter;
 use poecal_model::robot::{Joint, JointKind, Term};
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Unknowns, their determined directions, and the directions that are not determined.
 ///
 /// ```
 /// # use poecal_fit::analysis::{PlannedSession, identify};
-/// # use poecal_model::{measurement::Kind, simulate::{Simulation, elbow}};
-/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// # use poecal_model::{measurement::SessionKind, simulate::{Simulation, elbow}};
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?;
 /// let found = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?.identifiability;
 /// assert_eq!((found.rank, found.parameters), (30, 30));
-/// assert!(found.unidentifiable.is_empty() && found.spectrum.determined().iter().all(|&known| known));
+/// assert!(found.unidentifiable.is_empty() && found.spectrum.determined_unknowns().iter().all(|&known| known));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -51,21 +51,21 @@ pub struct Identifiability {
 impl Identifiability {
     /// Number of unknowns that are determined weakly.
     #[must_use]
-    pub fn weakly(&self) -> usize {
+    pub fn weakly_determined(&self) -> usize {
         self.weak.iter().map(|direction| direction.directions).sum()
     }
 }
 
 /// Variance `s²` of the whitened residuals, `2F / (m − n)` as in theory.md §7 (36): 1 if the noise is as stated.
 #[must_use]
-pub fn residual_variance(normal: &Normal) -> f64 {
+pub fn residual_variance(normal: &NormalEquations) -> f64 {
     let residuals = normal.residuals as f64;
     normal.mean_square() * residuals / (residuals - normal.dim() as f64).max(1.0)
 }
 
 /// Effective number of unknowns determined by a part of the residuals, `tr(N⁻¹ N_part)`: theory.md §6 (34).
 #[must_use]
-pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
+pub fn effective_unknowns(normal: &NormalEquations, part: &NormalEquations) -> f64 {
     let n = normal.dim();
     let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
     let Some(factor) =
@@ -78,7 +78,7 @@ pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
 
 /// Identifiability from the information `N` (upper triangle, row-major) and the variance of the residuals: theory.md §7 (36).
 #[must_use]
-pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
+pub fn identifiability(setup: &AnalysisSetup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
     // Motions of the base without any effect are no unknowns: they count as known.
     let motions = setup.layout.motions_without_effect(setup.estimate, &setup.session, setup.rows);
@@ -112,7 +112,11 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
         condition,
         unidentifiable,
         weak: hardly,
-        structural: structural(setup, motions.of_base, (base.len() - motions.of_base).saturating_sub(open)),
+        structural: structural_kernel(
+            setup,
+            motions.of_base,
+            (base.len() - motions.of_base).saturating_sub(open),
+        ),
         observability: Observability::new(&singular, setup.rows.len()),
         spectrum,
     }
@@ -135,7 +139,7 @@ fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64
 }
 
 /// True if the offset of a joint is free.
-fn has_offset(setup: &Setup<'_>, joint: &Joint) -> bool {
+fn has_offset(setup: &AnalysisSetup<'_>, joint: &Joint) -> bool {
     let name = |at: usize| setup.session.robot.joints.get(at).map(|it| it.name.as_str());
     let is_it = |parameter: &Parameter| {
         parameter
@@ -147,7 +151,7 @@ fn has_offset(setup: &Setup<'_>, joint: &Joint) -> bool {
 
 /// The structural kernel, known before any measurement: theory.md §7 (35). `base_motions` counts the motions of the base that have no
 /// effect although some blocks are held.
-fn structural(setup: &Setup<'_>, base_motions: usize, offsets: usize) -> Vec<Direction> {
+fn structural_kernel(setup: &AnalysisSetup<'_>, base_motions: usize, offsets: usize) -> Vec<Direction> {
     let unknowns = setup.session.unknowns;
     let joints = setup.session.robot.joints.iter().enumerate();
     let joints: Vec<&Joint> =

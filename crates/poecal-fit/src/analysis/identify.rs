@@ -6,18 +6,20 @@ use rand_core::SeedableRng;
 
 use super::coverage::{JointCoverage, coverage};
 use super::identifiability::{Identifiability, identifiability};
-use super::setup::Setup;
+use super::setup::AnalysisSetup;
 use super::spectrum::PLAUSIBLE;
 use crate::parameters::{Parameter, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::start::{
     Registration, clock_parameters, device_parameter, range_parameters, register, target_parameters,
 };
-use crate::state::{Chain, Estimate, Linkage, Packed, Session, delivered};
+use crate::state::{Estimate, Linkage, PackedValues, RowChain, Session, nominal_estimate};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Dataset, Noise, Observation};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, exactly, pairs, plan, random_configuration, seen};
+use poecal_model::simulate::{
+    SessionKind, exact_measurement, instrument_from_target, pairs, plan, random_configuration,
+};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::solve::LeastSquares;
 
@@ -32,17 +34,17 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_model::measurement::SessionKind;
 /// #     pub use poecal_fit::analysis::PlannedSession;
 /// # }
-/// use poecal::{Kind, PlannedSession};
-/// let planned = PlannedSession { kind: Kind::POINT, ..PlannedSession::default() };
+/// use poecal::{SessionKind, PlannedSession};
+/// let planned = PlannedSession { kind: SessionKind::POINT, ..PlannedSession::default() };
 /// assert!(planned.device_free);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedSession {
     /// Kind of the measurements of the tip, or of the targets.
-    pub kind: Kind,
+    pub kind: SessionKind,
     /// Noise of each component.
     pub noise: Noise,
     /// True if the device frame is unknown; otherwise measurements are in the robot's base frame.
@@ -53,7 +55,7 @@ impl Default for PlannedSession {
     /// Poses with 0.05 mm and 0.01°, device frame unknown.
     fn default() -> Self {
         let noise = Noise::new(5e-5, 0.01_f64.to_radians());
-        PlannedSession { kind: Kind::POSE, noise, device_free: true }
+        PlannedSession { kind: SessionKind::POSE, noise, device_free: true }
     }
 }
 
@@ -75,20 +77,20 @@ pub struct ExpectedError {
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_model::measurement::SessionKind;
 /// #     pub use poecal_fit::analysis::{PlannedSession, identify};
 /// #     pub use poecal_model::simulate::Simulation;
 /// #     pub use poecal_model::simulate;
 /// # }
-/// use poecal::{Kind, PlannedSession, identify, Simulation};
+/// use poecal::{SessionKind, PlannedSession, identify, Simulation};
 /// use poecal::simulate::elbow;
-/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?;
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?;
 /// let foresight = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Foresight {
+pub struct ExpectedUncertainty {
     /// Number of configurations.
     pub count: usize,
     /// Identifiability.
@@ -132,14 +134,14 @@ pub struct MeasuredPictures {
 /// #     pub use poecal_model::simulate::Simulation;
 /// # }
 /// use poecal::{PlannedSession, identify, Simulation};
-/// use poecal::simulate::{Kind, seven_axis};
-/// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::POSE)?;
+/// use poecal::simulate::{SessionKind, seven_axis};
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), SessionKind::POSE)?;
 /// let found = identify(&seven_axis(), made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((found.identifiability.rank, found.identifiability.parameters), (34, 34));
 /// assert!(found.expected.mean_m.is_some_and(|mean| mean < 2e-4));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
-pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Foresight> {
+pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<ExpectedUncertainty> {
     let frames = robot.instruments.len().saturating_sub(1) + robot.mounted.len().max(1);
     check_unknowns(robot, frames)?;
     if planned.kind.is_touched() {
@@ -149,12 +151,12 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
         ));
     }
     let (data, devices) = predicted_data(robot, readings, planned)?;
-    let mut estimate = delivered(robot, &data);
+    let mut estimate = nominal_estimate(robot, &data);
     for (station, device) in devices.into_iter().enumerate() {
         *estimate.device_mut(station) = device;
     }
     let count = readings.len() / robot.reading_names().len().max(1);
-    Ok(Foresight { count, ..foresee(robot, &data, estimate, planned)? })
+    Ok(ExpectedUncertainty { count, ..foresee(robot, &data, estimate, planned)? })
 }
 
 /// The same for rows that state more than a configuration (`poecal_import` reads them). Pictures count as their corners determine their poses.
@@ -163,21 +165,25 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_measured(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
+pub fn identify_measured(
+    robot: &Robot,
+    data: &Dataset,
+    planned: &PlannedSession,
+) -> Result<ExpectedUncertainty> {
     check_unknowns(robot, data.station_count() + data.targets.len())?;
-    let packed = Packed::from_dataset(robot, data);
+    let packed = PackedValues::from_dataset(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let session = Session::new(robot, data, &packed, planned.device_free);
     let registration =
         Registration { session, rows: &rows, noise: planned.noise, targets_free: false, prior: None };
-    let estimate = register(&registration, &delivered(robot, data)).0;
+    let estimate = register(&registration, &nominal_estimate(robot, data)).0;
     let pictures = (!data.pictures.is_empty()).then(|| MeasuredPictures {
         count: data.pictures.all.len(),
         corners: data.pictures.all.iter().map(|it| it.corners.len()).sum(),
         sigma_px: data.pictures.sigma_px,
         shared: [data.pictures.common.shift_m, data.pictures.common.turn_rad],
     });
-    Ok(Foresight { pictures, ..foresee(robot, data, estimate, planned)? })
+    Ok(ExpectedUncertainty { pictures, ..foresee(robot, data, estimate, planned)? })
 }
 
 /// Refuses robots with more unknowns than one fit allows.
@@ -199,28 +205,33 @@ fn foresee(
     data: &Dataset,
     mut estimate: Estimate,
     planned: &PlannedSession,
-) -> Result<Foresight> {
-    let packed = Packed::from_dataset(robot, data);
+) -> Result<ExpectedUncertainty> {
+    let packed = PackedValues::from_dataset(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let session = Session::new(robot, data, &packed, planned.device_free);
     estimate.recentre(&session, &rows);
     let mut free = screw_axes(estimate.kinds());
     free.extend(target_parameters(&session, &rows));
     // The first instrument's frame is a choice of the base.
-    let further = (1..data.station_count()).filter(|&station| estimate.tree.shared(station).is_none());
+    let further = (1..data.station_count()).filter(|&station| estimate.tree.shared_target(station).is_none());
     free.extend(further.map(|station| device_parameter(data, station, &rows)));
     free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
     free.extend(clock_parameters(&session, &rows).map(Parameter::ClockUnknown));
     let problem = Problem::new(session, rows.clone(), free, planned.noise);
-    let setup =
-        Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
+    let setup = AnalysisSetup {
+        session,
+        rows: &rows,
+        estimate: &estimate,
+        layout: problem.layout(),
+        noise: planned.noise,
+    };
     let gram = problem.normal(&estimate).gram;
     if !gram.iter().all(|value| value.is_finite()) {
         return ErrorKind::Measurement.refuse("found joint readings beyond what can be computed with, expected radians and metres: check their units");
     }
     let identifiability = identifiability(&setup, &gram, 1.0);
-    let expected = expected(&setup, &identifiability);
-    Ok(Foresight {
+    let expected = predict_error(&setup, &identifiability);
+    Ok(ExpectedUncertainty {
         count: data.len(),
         coverage: coverage(&session, &rows),
         identifiability,
@@ -260,9 +271,9 @@ pub fn predicted_data(
     for (row, readings, (instrument, target)) in planned_rows {
         let pose = match (instrument, target) {
             (None, None) => robot.forward_kinematics(readings),
-            pair => seen(robot, &Pose::identity(), pair, readings),
+            pair => instrument_from_target(robot, &Pose::identity(), pair, readings),
         };
-        let measurement = exactly(planned.kind, row, &pose);
+        let measurement = exact_measurement(planned.kind, row, &pose);
         let station = instrument.map_or(0, |mount| data.station_index(Some(&mount.name)));
         let target = data.target_index(target.map(|mount| mount.name.as_str()));
         let observation = Observation { station, ..Observation::new(target, measurement) };
@@ -272,18 +283,18 @@ pub fn predicted_data(
 }
 
 /// Expected error of predicted positions in random configurations: theory.md §7 (36c).
-fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
+fn predict_error(setup: &AnalysisSetup<'_>, found: &Identifiability) -> ExpectedError {
     let robot = setup.session.robot;
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
     let readings: Vec<f64> =
         (0..CONFIGURATIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
-    let packed = Packed::new(robot, &readings, robot.reading_names().len());
+    let packed = PackedValues::new(robot, &readings, robot.reading_names().len());
     let mut estimate = setup.estimate.clone();
     estimate.device_from_base = Pose::identity();
     let linkage = Linkage::new(&estimate);
     let spectrum = &found.spectrum;
     let plausible_m = PLAUSIBLE * setup.session.length_m;
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); setup.layout.dim()];
     let mut sigmas_m = Vec::new();
     for row in 0..packed.rows() {
@@ -315,8 +326,9 @@ mod tests {
     /// The rank is that of a calibration by them: 4 of each of six joints and 2 more; the size of the robot stays undetermined.
     #[test]
     fn balls_in_sockets_have_the_rank_of_the_closed_form() {
-        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::SOCKET).unwrap();
-        let planned = PlannedSession { kind: Kind::SOCKET, ..PlannedSession::default() };
+        let made =
+            Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::SOCKET).unwrap();
+        let planned = PlannedSession { kind: SessionKind::SOCKET, ..PlannedSession::default() };
         let found = identify_measured(&elbow(), &made.data, &planned).unwrap();
         assert_eq!(found.identifiability.rank, 26);
     }

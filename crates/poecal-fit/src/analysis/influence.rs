@@ -2,8 +2,8 @@
 
 use crate::problem::{Problem, RowBlock};
 use crate::state::Estimate;
-use poecal_numerics::kernels::{self as lanes, Wide};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::kernels::{self as lanes, LaneBlock};
+use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::{linalg, threads};
 
 /// Rows of one work item.
@@ -30,7 +30,7 @@ pub struct Influence {
 pub fn influence(
     problem: &Problem<'_>,
     estimate: &Estimate,
-    normal: &Normal,
+    normal: &NormalEquations,
     rows: &[u32],
     weights: &[f64],
     scale: impl Fn(u32, usize) -> f64 + Sync,
@@ -47,7 +47,7 @@ pub fn influence(
         let mut found = vec![Influence { leverage: 0.0, studentized: 0.0 }; rows.len()];
         problem.for_row_blocks(estimate, rows, |places, block| {
             let RowBlock { jacobian, residual, numbers } = block;
-            let mut weight = Wide::ZERO;
+            let mut weight = LaneBlock::ZERO;
             for ((lane, &place), &numbers) in places.iter().enumerate().zip(&*numbers) {
                 weight.0[lane] = weights.get(place as usize).copied().unwrap_or(1.0);
                 for (k, residual) in residual.iter_mut().enumerate().take(numbers) {
@@ -72,12 +72,12 @@ mod tests {
     use super::*;
     use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
     use crate::reference;
-    use crate::state::{Packed, Session};
+    use crate::state::{PackedValues, Session};
     use nalgebra::Vector3;
     use poecal_arm::lie::{Pose, rotation};
     use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
     use poecal_model::robot::Robot;
-    use poecal_model::simulate::{Kind, Simulation, elbow, gantry, scara};
+    use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, scara};
     use poecal_numerics::kernels::simd_levels;
     use poecal_numerics::solve::LeastSquares;
 
@@ -98,8 +98,8 @@ mod tests {
     }
 
     /// Rows of which every third has a position only, so that the lanes of one block differ.
-    fn mixed(robot: &Robot, count: usize) -> Dataset {
-        let mut made = Simulation { count, ..Simulation::default() }.run(robot, Kind::POSE).unwrap();
+    fn mixed_rows(robot: &Robot, count: usize) -> Dataset {
+        let mut made = Simulation { count, ..Simulation::default() }.run(robot, SessionKind::POSE).unwrap();
         for observation in made.data.observations.iter_mut().step_by(3) {
             let position = observation.measurement.pose().translation;
             observation.measurement = Measurement::point(position);
@@ -110,8 +110,8 @@ mod tests {
     #[test]
     fn rows_side_by_side_are_judged_as_each_alone_at_every_level() {
         let robot = &elbow();
-        let data = &mixed(robot, 45);
-        let packed = Packed::from_dataset(robot, data);
+        let data = &mixed_rows(robot, 45);
+        let packed = PackedValues::from_dataset(robot, data);
         let estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
         let mut free = screw_axes(estimate.kinds());
         free.push(Parameter::TargetFrame(TargetFrame::new(0)));
@@ -144,15 +144,15 @@ mod tests {
     }
 
     /// Rows of two targets, of which some state noise, with residual rotations of this size.
-    fn turned(robot: &Robot, turned_rad: f64) -> Dataset {
-        let mut data = mixed(robot, 67);
+    fn turned_rows(robot: &Robot, turned_rad: f64) -> Dataset {
+        let mut data = mixed_rows(robot, 67);
         data.targets = vec![Some("a".to_owned()), Some("b".to_owned())];
         for (row, observation) in data.observations.iter_mut().enumerate() {
             observation.target = row % 2;
             observation.stated.set(Quantity::Position, (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64));
             let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turned_rad));
             let turned = |pose: Pose| Pose::new(turn * pose.rotation, pose.translation);
-            observation.measurement = observation.measurement.changed(turned).unwrap();
+            observation.measurement = observation.measurement.map_pose(turned).unwrap();
         }
         data
     }
@@ -160,8 +160,8 @@ mod tests {
     #[test]
     fn columns_side_by_side_are_those_of_each_row_at_every_level() {
         for (robot, turned_rad) in [elbow(), scara(), gantry()].iter().zip([0.01, 0.4, 3.0]) {
-            let data = turned(robot, turned_rad);
-            let packed = Packed::from_dataset(robot, &data);
+            let data = turned_rows(robot, turned_rad);
+            let packed = PackedValues::from_dataset(robot, &data);
             let other = robot.home * Pose::from_translation(Vector3::new(0.1, 0.0, 0.2));
             let device_from_base = Pose::from_xyz_rpy([0.5, -1.0, 0.2], [0.3, -0.2, 1.2]);
             let estimate = Estimate::new(robot, vec![robot.home, other], device_from_base);
@@ -187,8 +187,8 @@ mod tests {
                         let own_jacobian: Vec<f64> = (0..residual.len()).flat_map(own).collect();
                         let own_residual = block.residual.map(|wide| wide.0[lane]);
                         let apart = [
-                            apart(&own_jacobian, jacobian),
-                            apart(&own_residual[..residual.len()], residual),
+                            relative_distance(&own_jacobian, jacobian),
+                            relative_distance(&own_residual[..residual.len()], residual),
                         ];
                         // Rounding of numbers that result from a few products each.
                         assert!(apart.iter().all(|&apart| apart < 1e-14), "{level:?} {place}: {apart:?}");
@@ -201,7 +201,7 @@ mod tests {
     }
 
     /// Difference from the expected numbers, relative to these.
-    fn apart(found: &[f64], expected: &[f64]) -> f64 {
+    fn relative_distance(found: &[f64], expected: &[f64]) -> f64 {
         let norm =
             |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();
         assert_eq!(found.len(), expected.len());

@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 
 use super::direction::{Cause, Direction};
-use super::setup::Setup;
+use super::setup::AnalysisSetup;
 use super::subspace;
-use crate::parameters::{Block, Names, Parameter, Subject};
+use crate::parameters::{Block, BlockNames, Parameter, ParameterSubject};
 use poecal_model::robot::Term;
 
 /// Share of an unknown (as a cosine) in directions without effect from which on it is not determined.
@@ -14,15 +14,14 @@ const OPEN: f64 = 0.01;
 const EXACT: f64 = 1e-5;
 
 /// A joint, and the index of its offset in a step.
-pub(crate) type Zero = (usize, usize);
+pub(crate) type OpenOffset = (usize, usize);
 
 /// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with the index of its offset in a step.
-pub(crate) fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
+pub(crate) fn own_offsets(setup: &AnalysisSetup<'_>) -> Vec<OpenOffset> {
     let is_held = |joint: usize| {
-        !setup
-            .layout
-            .parameters()
-            .any(|(it, _)| it.value_term().is_none() && it.model().subject() == Subject::Joint(joint))
+        !setup.layout.parameters().any(|(it, _)| {
+            it.value_term().is_none() && it.model().subject() == ParameterSubject::Joint(joint)
+        })
     };
     let offset = |(parameter, places): (&Parameter, &[(usize, f64)])| {
         let term = parameter.value_term().filter(|it| it.term == Term::OFFSET && is_held(it.joint))?;
@@ -33,18 +32,18 @@ pub(crate) fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
 
 /// Offsets that are not determined by directions without effect (orthonormal), grouped by the blocks that hide them, with the blocks to
 /// hold.
-pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Direction> {
+pub(crate) fn open_offsets(setup: &AnalysisSetup<'_>, directions: &[Vec<f64>]) -> Vec<Direction> {
     let n = setup.layout.dim();
     if directions.is_empty() {
         return Vec::new();
     }
     let space = DMatrix::from_fn(n, directions.len(), |row, column| directions[column][row]);
     let is_open = |space: &DMatrix<f64>, place: usize| space.row(place).norm() > OPEN;
-    let open: Vec<Zero> =
+    let open: Vec<OpenOffset> =
         own_offsets(setup).into_iter().filter(|(_, place)| is_open(&space, *place)).collect();
-    let mut groups: Vec<(Vec<Block>, Vec<Zero>)> = Vec::new();
+    let mut groups: Vec<(Vec<Block>, Vec<OpenOffset>)> = Vec::new();
     for &(joint, place) in &open {
-        let hidden = hiding(setup, &open, joint);
+        let hidden = hiding_blocks(setup, &open, joint);
         let known = |blocks: &[Block]| subspace::without_beyond(&space, &units(setup, blocks), EXACT).0;
         let by = hidden.into_iter().find(|blocks| !is_open(&known(blocks), place));
         let by = by.unwrap_or_default();
@@ -65,7 +64,7 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
 }
 
 /// Blocks that may hide the offset of a joint, the simplest first.
-fn hiding(setup: &Setup<'_>, open: &[Zero], joint: usize) -> Vec<Vec<Block>> {
+fn hiding_blocks(setup: &AnalysisSetup<'_>, open: &[OpenOffset], joint: usize) -> Vec<Vec<Block>> {
     let of = |wanted: &dyn Fn(Block) -> bool| -> Vec<Block> {
         setup.layout.parameters().map(|(it, _)| it.block()).filter(|it| wanted(*it)).collect()
     };
@@ -85,7 +84,7 @@ fn hiding(setup: &Setup<'_>, open: &[Zero], joint: usize) -> Vec<Vec<Block>> {
 }
 
 /// Unit vectors of the unknowns of some blocks.
-fn units(setup: &Setup<'_>, blocks: &[Block]) -> Vec<Vec<f64>> {
+fn units(setup: &AnalysisSetup<'_>, blocks: &[Block]) -> Vec<Vec<f64>> {
     let n = setup.layout.dim();
     let own = setup.layout.parameters().filter(|(it, _)| blocks.contains(&it.block()));
     own.flat_map(|(_, places)| places.iter().map(|(place, _)| unit(n, *place))).collect()
@@ -97,9 +96,9 @@ fn unit(n: usize, place: usize) -> Vec<f64> {
 }
 
 /// The description of offsets that some blocks hide.
-fn direction(setup: &Setup<'_>, by: &[Block], joints: &[Zero], directions: usize) -> Direction {
+fn direction(setup: &AnalysisSetup<'_>, by: &[Block], joints: &[OpenOffset], directions: usize) -> Direction {
     let session = &setup.session;
-    let all = Names {
+    let all = BlockNames {
         joints: session.robot.joints.iter().map(|it| it.name.clone()).collect(),
         targets: session.data.targets.clone(),
         stations: session.data.stations.clone(),

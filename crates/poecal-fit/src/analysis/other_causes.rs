@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
-use super::causes::{Degree, NOTABLE, Rules, join, joint_of};
+use super::causes::{Degree, ExplainedDirections, NOTABLE, join, joint_of};
 use super::direction::Cause;
 use super::excitation::target_name;
 use super::spectrum::{PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
 use crate::parameters::{Parameter, TargetPlace};
 use crate::problem::Problem;
-use crate::state::{Packed, RangeTerm, Session, sample_rows};
+use crate::state::{PackedValues, RangeTerm, Session, sample_rows};
 use poecal_arm::lie::{Freedom, Pose};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
@@ -19,7 +19,7 @@ use poecal_numerics::solve::LeastSquares;
 /// Rows with shuffled joint values, by which the effect of their combination is tested.
 const SHUFFLED: usize = 400;
 
-impl Rules<'_> {
+impl ExplainedDirections<'_> {
     /// The size of the robot and the cell: angles, contacts and directions alone do not determine it.
     pub(crate) fn size(&mut self) {
         let has_length = |row: &u32| self.setup.session.observation(*row).measurement.has_length();
@@ -125,7 +125,7 @@ impl Rules<'_> {
             // Observations of a data set are valid in another one.
             let _ = data.push_observation(&readings, *setup.session.observation(row));
         }
-        let packed = Packed::new(robot, data.all_readings(), width);
+        let packed = PackedValues::new(robot, data.all_readings(), width);
         let free: Vec<Parameter> = setup.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let session = Session { data: &data, packed: &packed, ..setup.session };
         let problem = Problem::new(session, (0..count as u32).collect(), free, setup.noise);
@@ -159,8 +159,8 @@ impl Rules<'_> {
     }
 
     /// Directions that no rule explains, as they are; equal descriptions once.
-    pub(crate) fn others(&mut self) {
-        for direction in subspace::sparse(&self.unexplained.clone()) {
+    pub(crate) fn explain_other_directions(&mut self) {
+        for direction in subspace::sparse_basis(&self.unexplained.clone()) {
             let (joints, parts) = self.parts(&direction);
             let (open, plural) = match (parts.len(), self.degree) {
                 (1, _) => ("is not determined by these measurements", false),

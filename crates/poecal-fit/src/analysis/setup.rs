@@ -8,7 +8,7 @@ use poecal_model::measurement::Noise;
 ///
 /// An example is [`super::identify`].
 #[derive(Clone, Copy, Debug)]
-pub struct Setup<'a> {
+pub struct AnalysisSetup<'a> {
     /// Robot and measurements.
     pub session: Session<'a>,
     /// Rows of the fit.

@@ -61,7 +61,7 @@ impl Spectrum {
 
     /// For each unknown in the order of a step, true if the measurements determine it: theory.md §7, below (36).
     #[must_use]
-    pub fn determined(&self) -> Vec<bool> {
+    pub fn determined_unknowns(&self) -> Vec<bool> {
         let n = self.vectors.nrows();
         (0..n)
             .map(|row| {
@@ -102,7 +102,7 @@ mod tests {
     fn undetermined_directions_have_no_variance() {
         let vectors = DMatrix::identity(2, 2);
         let found = Spectrum { values: vec![0.0, 4.0], vectors, undetermined: 1, variance: 1.0 };
-        assert_eq!(found.determined(), [false, true]);
+        assert_eq!(found.determined_unknowns(), [false, true]);
         assert_eq!(found.variance_along(&[0.0, 1.0]), Some(0.25));
         assert_eq!(found.variance_along(&[1.0, 1.0]), None);
     }

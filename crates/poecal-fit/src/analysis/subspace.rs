@@ -9,7 +9,7 @@ const VISIBLE: f64 = 0.1;
 
 /// The part of `space` that would stay undetermined if the quantities along some directions were known, and the number of dimensions
 /// removed: theory.md §7 (36a). The directions are unit vectors, not necessarily orthogonal.
-pub(crate) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix<f64>, usize) {
+pub(crate) fn remove_directions(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix<f64>, usize) {
     without_beyond(space, directions, VISIBLE)
 }
 
@@ -58,7 +58,7 @@ fn orthonormal(vectors: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
 }
 
 /// Basis of the same space with as many zeros as elimination produces: unit directions of few unknowns each.
-pub(crate) fn sparse(space: &DMatrix<f64>) -> Vec<Vec<f64>> {
+pub(crate) fn sparse_basis(space: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> =
         space.column_iter().map(|column| column.iter().copied().collect()).collect();
     let count = rows.len();
@@ -95,11 +95,11 @@ mod tests {
         let half = 0.5f64.sqrt();
         let space = DMatrix::from_column_slice(4, 2, &[half, half, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let unit = |k: usize| (0..4).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-        let (left, gone) = without(&space, &[unit(0), unit(1)]);
+        let (left, gone) = remove_directions(&space, &[unit(0), unit(1)]);
         assert_eq!((left.ncols(), gone), (1, 1));
         assert!((left[(2, 0)].abs() - 1.0).abs() < 1e-12);
-        assert_eq!(without(&space, &[unit(3)]).1, 0);
-        assert_eq!(without(&space, &[unit(0), unit(2), unit(2)]).1, 2);
-        assert_eq!(sparse(&space).len(), 2);
+        assert_eq!(remove_directions(&space, &[unit(3)]).1, 0);
+        assert_eq!(remove_directions(&space, &[unit(0), unit(2), unit(2)]).1, 2);
+        assert_eq!(sparse_basis(&space).len(), 2);
     }
 }

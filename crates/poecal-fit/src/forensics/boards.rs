@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::DiagnosisKind;
-use super::change::Change;
-use super::diagnosis::short;
+use super::change::RowChange;
+use super::diagnosis::format_short;
 use super::fitter::Fitter;
-use super::hypotheses::Hypothesis;
+use super::hypotheses::MistakeHypothesis;
 use poecal_model::camera::{Board, Pictures};
 use poecal_model::measurement::{Dataset, Observation, Quantity};
 
@@ -21,7 +21,7 @@ const FINE: f64 = 1e-3;
 
 /// Size of the boards with which the nominal robot fits the pictures best. `None` if some rows are no pictures, or if the size is the
 /// stated one.
-pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<Hypothesis> {
+pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<MistakeHypothesis> {
     let Pictures { boards, cameras, .. } = &sample.pictures;
     // The rows have lost their pictures, but not the names of the boards and cameras.
     let names: Vec<&str> =
@@ -33,20 +33,20 @@ pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<Hypoth
     if boards.is_empty() || !sample.observations.iter().all(is_picture) {
         return None;
     }
-    let change = |log: f64| Change::Resize(log.exp(), Quantity::Position, true);
+    let change = |log: f64| RowChange::Resize(log.exp(), Quantity::Position, true);
     // The misfit is in lengths of the robot, which are the same for all sizes of the board.
     let misfit = |log: f64| fitter.roughly_registered(&change(log).apply(sample)).1.total_m;
     let steps = (LARGEST.ln() / STEP.ln()).ceil() as i32;
     let coarse = (-steps..=steps).map(|step| f64::from(step) * STEP.ln());
     let (_, near) = coarse.map(|log| (misfit(log), log)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let log = lowest(misfit, near - STEP.ln(), near + STEP.ln());
+    let log = minimize_golden(misfit, near - STEP.ln(), near + STEP.ln());
     let factor = log.exp();
     if (factor - 1.0).abs() < LEAST {
         return None;
     }
     let stated_m = boards.iter().map(nearest_m).fold(f64::INFINITY, f64::min);
-    let (stated, found) = (short(1e3 * stated_m), short(1e3 * stated_m * factor));
-    Some(Hypothesis::new(
+    let (stated, found) = (format_short(1e3 * stated_m), format_short(1e3 * stated_m * factor));
+    Some(MistakeHypothesis::new(
         DiagnosisKind::BoardSize,
         change(log),
         format!("taking the board as {factor:.3} times as large"),
@@ -58,7 +58,7 @@ pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<Hypoth
 }
 
 /// Argument of the lowest value of a function between two arguments, by golden-section search.
-fn lowest(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
+fn minimize_golden(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (to - golden * (to - from), from + golden * (to - from));
     let (mut at_a, mut at_b) = (value(a), value(b));

@@ -9,7 +9,7 @@ use poecal_model::measurement::{Dataset, Measurement, Observation, Quantity};
 
 /// A change of every row. Columns are indices of readings.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Change {
+pub(crate) enum RowChange {
     /// Readings of some columns times a factor.
     Scale(Vec<usize>, f64),
     /// Each column times a factor of its own.
@@ -21,7 +21,7 @@ pub(crate) enum Change {
     /// A number added to a column, radians or metres.
     Add(usize, f64),
     /// Each reading paired with the measurement this many rows later in the same stream.
-    Shift(i32, Stream),
+    Shift(i32, ShiftedRows),
     /// Lengths of a quantity times a factor; the last is true if no other quantity is measured.
     Resize(f64, Quantity, bool),
     /// Positions of the rows of a file times a factor.
@@ -44,13 +44,13 @@ pub(crate) enum Change {
     Mirror(Matrix3<f64>, bool),
 }
 
-impl Change {
+impl RowChange {
     /// The data with the change. Rows without a partner after a shift are dropped.
     pub(crate) fn apply(&self, data: &Dataset) -> Dataset {
-        if let Change::Shift(by, stream) = self {
-            return shifted(data, *by, *stream);
+        if let RowChange::Shift(by, stream) = self {
+            return shift_rows(data, *by, *stream);
         }
-        let mut changed = like(data);
+        let mut changed = empty_like(data);
         changed.change_further(|readings| self.change_readings(readings));
         let mut readings = Vec::new();
         for (row, observation) in data.observations.iter().enumerate() {
@@ -65,73 +65,73 @@ impl Change {
 
     fn change_readings(&self, readings: &mut [f64]) {
         match self {
-            Change::Scale(columns, factor) => {
+            RowChange::Scale(columns, factor) => {
                 columns.iter().for_each(|&column| readings[column] *= factor);
             }
-            Change::Scales(factors) => {
+            RowChange::Scales(factors) => {
                 readings.iter_mut().zip(factors).for_each(|(reading, factor)| *reading *= factor);
             }
-            Change::Exchange(a, b) => readings.swap(*a, *b),
-            Change::Combine { column, own, other, factor } => {
+            RowChange::Exchange(a, b) => readings.swap(*a, *b),
+            RowChange::Combine { column, own, other, factor } => {
                 readings[*column] = own * readings[*column] + factor * readings[*other];
             }
-            Change::Add(column, offset) => readings[*column] += offset,
-            Change::Shift(..)
-            | Change::Resize(..)
-            | Change::ResizeFile(..)
-            | Change::ResizeAxis(..)
-            | Change::FreeZero
-            | Change::ScaleTilts(_)
-            | Change::Quaternion(_)
-            | Change::Invert
-            | Change::Transpose
-            | Change::Turn(_)
-            | Change::Mirror(..) => {}
+            RowChange::Add(column, offset) => readings[*column] += offset,
+            RowChange::Shift(..)
+            | RowChange::Resize(..)
+            | RowChange::ResizeFile(..)
+            | RowChange::ResizeAxis(..)
+            | RowChange::FreeZero
+            | RowChange::ScaleTilts(_)
+            | RowChange::Quaternion(_)
+            | RowChange::Invert
+            | RowChange::Transpose
+            | RowChange::Turn(_)
+            | RowChange::Mirror(..) => {}
         }
     }
 
     fn measurement(&self, row: usize, observation: &Observation) -> Measurement {
         let seen = observation.measurement;
         match self {
-            Change::Resize(factor, quantity, _) => {
+            RowChange::Resize(factor, quantity, _) => {
                 let mut resized = seen;
-                if seen.function().leading() == *quantity {
+                if seen.function().leading_quantity() == *quantity {
                     resized.lengths_mut().iter_mut().for_each(|length| *length *= factor);
                 }
                 resized
             }
-            Change::ResizeAxis(axis, factor) => {
+            RowChange::ResizeAxis(axis, factor) => {
                 let mut resized = seen;
                 if seen.has(Quantity::Position) {
                     resized.lengths_mut()[*axis] *= factor;
                 }
                 resized
             }
-            Change::ResizeFile(factor, file) => {
+            RowChange::ResizeFile(factor, file) => {
                 let mut resized = seen;
                 if observation.source.file == *file && seen.has(Quantity::Position) {
                     resized.lengths_mut().iter_mut().for_each(|length| *length *= factor);
                 }
                 resized
             }
-            Change::FreeZero => seen.with_unknown_zero(),
-            Change::ScaleTilts(factor) => seen.with_angles_times(*factor),
-            Change::Mirror(mirror, _) if !seen.sees_orientation() => {
-                seen.changed(|pose| Pose::from_translation(mirror * pose.translation)).unwrap_or(seen)
+            RowChange::FreeZero => seen.with_unknown_zero(),
+            RowChange::ScaleTilts(factor) => seen.with_angles_times(*factor),
+            RowChange::Mirror(mirror, _) if !seen.sees_orientation() => {
+                seen.map_pose(|pose| Pose::from_translation(mirror * pose.translation)).unwrap_or(seen)
             }
-            Change::Quaternion(_)
-            | Change::Invert
-            | Change::Transpose
-            | Change::Turn(_)
-            | Change::Mirror(..) => {
+            RowChange::Quaternion(_)
+            | RowChange::Invert
+            | RowChange::Transpose
+            | RowChange::Turn(_)
+            | RowChange::Mirror(..) => {
                 seen.frame().map_or(seen, |pose| Measurement::of_pose(&self.pose(row, &pose)))
             }
-            Change::Scale(..)
-            | Change::Scales(_)
-            | Change::Exchange(..)
-            | Change::Combine { .. }
-            | Change::Add(..)
-            | Change::Shift(..) => seen,
+            RowChange::Scale(..)
+            | RowChange::Scales(_)
+            | RowChange::Exchange(..)
+            | RowChange::Combine { .. }
+            | RowChange::Add(..)
+            | RowChange::Shift(..) => seen,
         }
     }
 
@@ -139,28 +139,28 @@ impl Change {
     fn pose(&self, row: usize, seen: &Pose) -> Pose {
         let Pose { rotation: turned, translation } = *seen;
         match self {
-            Change::Scale(..)
-            | Change::Scales(_)
-            | Change::Exchange(..)
-            | Change::Combine { .. }
-            | Change::Add(..)
-            | Change::Shift(..)
-            | Change::Resize(..)
-            | Change::ResizeFile(..)
-            | Change::ResizeAxis(..)
-            | Change::FreeZero
-            | Change::ScaleTilts(_) => *seen,
-            Change::Quaternion(places) => {
+            RowChange::Scale(..)
+            | RowChange::Scales(_)
+            | RowChange::Exchange(..)
+            | RowChange::Combine { .. }
+            | RowChange::Add(..)
+            | RowChange::Shift(..)
+            | RowChange::Resize(..)
+            | RowChange::ResizeFile(..)
+            | RowChange::ResizeAxis(..)
+            | RowChange::FreeZero
+            | RowChange::ScaleTilts(_) => *seen,
+            RowChange::Quaternion(places) => {
                 let q = rotation::to_quaternion_xyzw(&turned);
                 let [x, y, z, w] = places.map(|place| q[place]);
                 Pose::new(rotation::from_quaternion_xyzw(&Vector4::new(x, y, z, w)), translation)
             }
-            Change::Invert => seen.inverse(),
-            Change::Transpose => Pose::new(turned.transpose(), translation),
-            Change::Turn(others) => {
+            RowChange::Invert => seen.inverse(),
+            RowChange::Transpose => Pose::new(turned.transpose(), translation),
+            RowChange::Turn(others) => {
                 Pose::new(others.get(row).copied().flatten().unwrap_or(turned), translation)
             }
-            Change::Mirror(mirror, turns) => {
+            RowChange::Mirror(mirror, turns) => {
                 let turned = if *turns { mirror * turned * mirror } else { turned };
                 Pose::new(turned, mirror * translation)
             }
@@ -170,7 +170,7 @@ impl Change {
 
 /// Rows that a shift counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stream {
+pub(crate) enum ShiftedRows {
     /// Rows of the same target.
     Target,
     /// All rows: the target's name stays with the reading.
@@ -178,8 +178,8 @@ pub(crate) enum Stream {
 }
 
 /// A data set without rows, with the same readings, targets and stations.
-pub(crate) fn like(data: &Dataset) -> Dataset {
-    let mut empty = data.only(&[]);
+pub(crate) fn empty_like(data: &Dataset) -> Dataset {
+    let mut empty = data.select_rows(&[]);
     empty.pose_residual = None;
     empty
 }
@@ -190,10 +190,10 @@ pub(crate) fn push(data: &mut Dataset, readings: &[f64], observation: Observatio
 }
 
 /// Readings of each row with the measurement `by` rows later in the same stream and file.
-fn shifted(data: &Dataset, by: i32, stream: Stream) -> Dataset {
+fn shift_rows(data: &Dataset, by: i32, stream: ShiftedRows) -> Dataset {
     let mut streams: BTreeMap<(Option<usize>, u32), Vec<usize>> = BTreeMap::new();
     for (row, observation) in data.observations.iter().enumerate() {
-        let target = (stream == Stream::Target).then_some(observation.target);
+        let target = (stream == ShiftedRows::Target).then_some(observation.target);
         streams.entry((target, observation.source.file)).or_default().push(row);
     }
     let mut partner = vec![None; data.len()];
@@ -205,7 +205,7 @@ fn shifted(data: &Dataset, by: i32, stream: Stream) -> Dataset {
             partner[from] = Some(to);
         }
     }
-    let mut changed = like(data);
+    let mut changed = empty_like(data);
     for (row, to) in partner.iter().enumerate() {
         if let Some(to) = *to {
             let measurement = data.observations[to].measurement;

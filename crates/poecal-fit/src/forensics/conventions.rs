@@ -3,12 +3,12 @@
 use nalgebra::Matrix3;
 
 use super::DiagnosisKind;
-use super::change::{Change, like, push};
+use super::change::{RowChange, empty_like, push};
 use super::euler::{Reinterpretation, columns, words};
 use super::fitter::Fitter;
-use super::hypotheses::Hypothesis;
+use super::hypotheses::MistakeHypothesis;
 use crate::start::mean_rotation;
-use crate::state::{Chain, Linkage};
+use crate::state::{Linkage, RowChain};
 use poecal_model::measurement::{Dataset, Measurement, Observation};
 
 /// Conventions that are tested as hypotheses.
@@ -27,17 +27,17 @@ struct MeasuredOrientation {
 }
 
 /// Best conventions of the angles, judged by rotations alone. Device frame and arm are those that fit the positions.
-pub(crate) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis> {
-    let mut points = like(data);
+pub(crate) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<MistakeHypothesis> {
+    let mut points = empty_like(data);
     for (row, seen) in data.observations.iter().enumerate() {
         let Some(position) = seen.measurement.position() else { continue };
         let measurement = Measurement::point(position);
         push(&mut points, data.readings(row), Observation { measurement, ..*seen });
     }
-    let (estimate, _) = fitter.registered(&points);
+    let (estimate, _) = fitter.register_nominal(&points);
     let linkage = Linkage::new(&estimate);
-    let packed = fitter.packed(data);
-    let mut chain = Chain::default();
+    let packed = fitter.pack_values(data);
+    let mut chain = RowChain::default();
     let mut seen = Vec::new();
     for (row, observation) in data.observations.iter().enumerate() {
         if let Some(turned) = observation.measurement.orientation() {
@@ -48,9 +48,9 @@ pub(crate) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis
     }
     let all = Reinterpretation::all().into_iter().enumerate();
     let mut judged: Vec<ScoredConvention> =
-        all.map(|(rank, meaning)| (scored(&seen, &meaning), (rank, meaning))).collect();
+        all.map(|(rank, meaning)| (score_convention(&seen, &meaning), (rank, meaning))).collect();
     judged.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-    let judged = distinct(judged);
+    let judged = distinct_conventions(judged);
     let turns = |rotations: Vec<Matrix3<f64>>| {
         let mut turns = vec![None; data.len()];
         seen.iter().zip(rotations).for_each(|(one, turned)| turns[one.row] = Some(turned));
@@ -64,7 +64,7 @@ type ScoredConvention = ((f64, Vec<Matrix3<f64>>), (usize, Reinterpretation));
 
 /// Best conventions with different orientations. Of equivalent ones the first in the order of all is named, which is read from the
 /// usual columns.
-fn distinct(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> {
+fn distinct_conventions(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> {
     let mut kept: Vec<ScoredConvention> = Vec::new();
     for one in judged {
         let rotations = &one.0.1;
@@ -81,7 +81,7 @@ fn distinct(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> {
 
 /// The orientations in a convention, and their mean squared chordal distance from orientations that follow the arm. A rotation has two
 /// sets of angles; the better one counts.
-fn scored(seen: &[MeasuredOrientation], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) {
+fn score_convention(seen: &[MeasuredOrientation], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) {
     let pairs: Vec<[Matrix3<f64>; 2]> = seen.iter().map(|one| meaning.rotations(&one.turned)).collect();
     let relative = |k: usize, branch: usize| seen[k].link_from_device * pairs[k][branch];
     let mut branches = vec![0; seen.len()];
@@ -108,7 +108,7 @@ fn scored(seen: &[MeasuredOrientation], meaning: &Reinterpretation) -> (f64, Vec
     (total / seen.len().max(1) as f64, rotations)
 }
 
-fn hypothesis(meaning: Reinterpretation, turns: Vec<Option<Matrix3<f64>>>) -> Hypothesis {
+fn hypothesis(meaning: Reinterpretation, turns: Vec<Option<Matrix3<f64>>>) -> MistakeHypothesis {
     let Reinterpretation { read, meant, factor } = meaning;
     let (action, advice) = if read == meant {
         let (is, read_as, unit) =
@@ -136,5 +136,5 @@ fn hypothesis(meaning: Reinterpretation, turns: Vec<Option<Matrix3<f64>>>) -> Hy
             ),
         )
     };
-    Hypothesis::new(DiagnosisKind::EulerConvention, Change::Turn(turns), action, advice)
+    MistakeHypothesis::new(DiagnosisKind::EulerConvention, RowChange::Turn(turns), action, advice)
 }

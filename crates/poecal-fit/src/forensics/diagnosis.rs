@@ -58,8 +58,8 @@ pub enum DiagnosisKind {
 /// ```
 /// use poecal_fit::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
 /// use poecal_model::measurement::Dataset;
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::POSE)?;
+/// use poecal_model::simulate::{SessionKind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), SessionKind::POSE)?;
 /// let mut data = Dataset::new(made.data.reading_names().to_vec());
 /// for row in 0..made.data.len() {
 ///     let mut readings = made.data.readings(row).to_vec();
@@ -95,7 +95,7 @@ impl Diagnosis {
 }
 
 /// A number with three significant digits.
-pub(crate) fn short(value: f64) -> String {
+pub(crate) fn format_short(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {
         return value.to_string();
     }

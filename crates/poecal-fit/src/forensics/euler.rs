@@ -60,7 +60,7 @@ impl Reinterpretation {
     /// The rotation meant, by each of the two sets of angles that a rotation has.
     pub(crate) fn rotations(&self, r: &Matrix3<f64>) -> [Matrix3<f64>; 2] {
         let found = self.read.decompose(r);
-        [found, self.read.others(found)]
+        [found, self.read.other_angles(found)]
             .map(|angles| self.meant.rotation(angles.map(|angle| angle * self.factor)))
     }
 }

@@ -6,8 +6,8 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::diagnosis::short;
-use super::fitter::{Fitter, SHORT, Score, sampled, taken};
+use super::diagnosis::format_short;
+use super::fitter::{Fitter, SHORT, Score, subsample, take_rows};
 use super::judge::CALIBRATED_SHARE;
 use super::{Diagnosis, DiagnosisKind};
 use crate::state::Estimate;
@@ -28,7 +28,7 @@ const NAMED: usize = 5;
 
 /// Two names that may be exchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Names {
+pub(crate) enum ExchangeableNames {
     /// Names of measured targets.
     Targets(usize, usize),
     /// Names of stations: of the device, or of the touched object.
@@ -37,24 +37,25 @@ pub(crate) enum Names {
     Sides,
 }
 
-impl Names {
+impl ExchangeableNames {
     /// Number of mean squared errors by which a row must fit better: heights near zero hardly determine their sign.
     fn margin(self) -> f64 {
-        if self == Names::Sides { 1.0 } else { 0.0 }
+        if self == ExchangeableNames::Sides { 1.0 } else { 0.0 }
     }
 
     /// True if an exchange changes a row: a touched plane has no side.
     fn counts(self, row: &Observation) -> bool {
         match self {
-            Names::Targets(a, b) => [a, b].contains(&row.target),
-            Names::Stations(a, b) => [a, b].contains(&row.station),
-            Names::Sides => row.measurement.has_length_of(Quantity::Height),
+            ExchangeableNames::Targets(a, b) => [a, b].contains(&row.target),
+            ExchangeableNames::Stations(a, b) => [a, b].contains(&row.station),
+            ExchangeableNames::Sides => row.measurement.has_length_of(Quantity::Height),
         }
     }
 
     /// Groups of rows for which exchanging all is as good as exchanging none: those of each plane, or all that count.
     fn groups(self, all: &Dataset) -> Vec<Vec<usize>> {
-        let place = |row: &usize| if self == Names::Sides { all.observations[*row].station } else { 0 };
+        let place =
+            |row: &usize| if self == ExchangeableNames::Sides { all.observations[*row].station } else { 0 };
         let mut groups = vec![Vec::new(); all.station_count()];
         let rows = (0..all.len()).filter(|&row| self.counts(&all.observations[row]));
         rows.for_each(|row| groups[place(&row)].push(row));
@@ -65,9 +66,9 @@ impl Names {
     fn exchange_in(self, row: &mut Observation) {
         let other = |name: usize, [a, b]: [usize; 2]| if name == a { b } else { a };
         match self {
-            Names::Targets(a, b) => row.target = other(row.target, [a, b]),
-            Names::Stations(a, b) => row.station = other(row.station, [a, b]),
-            Names::Sides => {
+            ExchangeableNames::Targets(a, b) => row.target = other(row.target, [a, b]),
+            ExchangeableNames::Stations(a, b) => row.station = other(row.station, [a, b]),
+            ExchangeableNames::Sides => {
                 row.measurement.lengths_mut().iter_mut().for_each(|height| *height = -*height);
             }
         }
@@ -76,14 +77,14 @@ impl Names {
     /// Exchanges the names in an estimate; for sides, those of the plane of a row.
     fn exchange(self, estimate: &mut Estimate, row: &Observation) {
         match self {
-            Names::Targets(a, b) => estimate.base_from_target.swap(a, b),
-            Names::Stations(a, b) => {
+            ExchangeableNames::Targets(a, b) => estimate.base_from_target.swap(a, b),
+            ExchangeableNames::Stations(a, b) => {
                 let (first, second) = (*estimate.device(a), *estimate.device(b));
                 (*estimate.device_mut(a), *estimate.device_mut(b)) = (second, first);
                 let (first, second) = (estimate.range(a), estimate.range(b));
                 (*estimate.range_mut(a), *estimate.range_mut(b)) = (second, first);
             }
-            Names::Sides => {
+            ExchangeableNames::Sides => {
                 let turned = Pose::new(rotation::exp(&Vector3::new(PI, 0.0, 0.0)), Vector3::zeros());
                 let device = estimate.device_mut(row.station);
                 *device = turned * *device;
@@ -102,7 +103,7 @@ pub(crate) fn starts(all: &Dataset) -> [Range<usize>; 3] {
 pub(crate) struct Exchange {
     /// Error of all rows after the exchange, metres.
     pub(crate) error_m: f64,
-    pub(crate) names: Names,
+    pub(crate) names: ExchangeableNames,
     /// Exchanged rows, of those that were searched.
     pub(crate) rows: Vec<usize>,
     /// Errors of these rows before and after, metres.
@@ -112,16 +113,23 @@ pub(crate) struct Exchange {
 
 impl Exchange {
     /// The diagnosis. `searched` are the rows that were searched.
-    pub(crate) fn told(self, data: &Dataset, searched: &[u32], word: impl Fn(usize) -> String) -> Diagnosis {
+    pub(crate) fn diagnosis(
+        self,
+        data: &Dataset,
+        searched: &[u32],
+        word: impl Fn(usize) -> String,
+    ) -> Diagnosis {
         let rows: Vec<u32> = self.rows.into_iter().filter_map(|row| searched.get(row).copied()).collect();
         let where_ = where_words(data, searched, self.names, &rows);
         let exchanging = |a, b| format!("exchanging the names of {} and {}", word(a), word(b));
         let (kind, action, what) = match self.names {
-            Names::Targets(a, b) => (DiagnosisKind::TargetsSwapped, exchanging(a, b), "the targets' names"),
-            Names::Stations(a, b) => {
+            ExchangeableNames::Targets(a, b) => {
+                (DiagnosisKind::TargetsSwapped, exchanging(a, b), "the targets' names")
+            }
+            ExchangeableNames::Stations(a, b) => {
                 (DiagnosisKind::PlacesSwapped, exchanging(a, b), "which of them was meant")
             }
-            Names::Sides => (
+            ExchangeableNames::Sides => (
                 DiagnosisKind::HeightSign,
                 "counting the heights the other way".to_owned(),
                 "on which side of the plane they are, and which way the gauge counts",
@@ -132,19 +140,19 @@ impl Exchange {
             "{action} {where_} lowers the calibrated error of {} from {} to {} mm (RMS): \
              check {what} there",
             if rows.len() == 1 { "that row" } else { "those rows" },
-            short(before_mm),
-            short(after_mm)
+            format_short(before_mm),
+            format_short(after_mm)
         );
         Diagnosis { kind, statement, rows, before_mm, after_mm }
     }
 }
 
 /// First models: of all rows, and of either half. For sides, those blocks of rows are exchanged that fit best so.
-fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names) -> Vec<Estimate> {
-    if names != Names::Sides {
+fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: ExchangeableNames) -> Vec<Estimate> {
+    if names != ExchangeableNames::Sides {
         let part = |range: Range<usize>| {
-            let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
-            fitter.roughly_registered(&sampled(&part)).0
+            let part = take_rows(all, &range.map(|row| row as u32).collect::<Vec<_>>());
+            fitter.roughly_registered(&subsample(&part)).0
         };
         return starts(all).into_iter().map(part).collect();
     }
@@ -159,24 +167,29 @@ fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names) -> Vec<Estimate> {
     let strong = fitter.with_strong_prior();
     let rough = |block| {
         let data = exchanged(block);
-        let (estimate, misfit) = fitter.roughly_registered(&sampled(&data));
+        let (estimate, misfit) = fitter.roughly_registered(&subsample(&data));
         (misfit.total_m, estimate, data)
     };
     let mut found: Vec<_> = blocks.par_iter().map(rough).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.truncate(NEARER);
     let firmly =
-        |(_, estimate, data): (f64, Estimate, Dataset)| strong.calibrated(&sampled(&data), &estimate, SHORT);
+        |(_, estimate, data): (f64, Estimate, Dataset)| strong.calibrate(&subsample(&data), &estimate, SHORT);
     let mut found: Vec<_> = found.into_par_iter().map(firmly).collect();
     found.sort_by(|a, b| a.1.total_m.total_cmp(&b.1.total_m));
     found.into_iter().take(FIRSTS).map(|(estimate, _)| estimate).collect()
 }
 
 /// Rows of a pair of names that fit better exchanged, from several first models.
-pub(crate) fn exchanged(fitter: &Fitter<'_>, all: &Dataset, names: Names, base: &Score) -> Option<Exchange> {
+pub(crate) fn find_exchange(
+    fitter: &Fitter<'_>,
+    all: &Dataset,
+    names: ExchangeableNames,
+    base: &Score,
+) -> Option<Exchange> {
     let best = firsts(fitter, all, names)
         .into_iter()
-        .filter_map(|first| reassigned(fitter, all, first, names, base.calibrated.total_m))
+        .filter_map(|first| reassign_rows(fitter, all, first, names, base.calibrated.total_m))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (error_m, rows, before_m, after_m, rest) = best;
     let plausible = !rows.is_empty()
@@ -188,19 +201,19 @@ pub(crate) fn exchanged(fitter: &Fitter<'_>, all: &Dataset, names: Names, base: 
 }
 
 /// Error of all rows, exchanged rows, their error before and after, and the error of the others.
-type Reassigned = (f64, Vec<usize>, f64, f64, f64);
+type ReassignmentErrors = (f64, Vec<usize>, f64, f64, f64);
 
 /// Reassigns rows to the name that they fit better and refits, until nothing changes.
-fn reassigned(
+fn reassign_rows(
     fitter: &Fitter<'_>,
     all: &Dataset,
     mut estimate: Estimate,
-    names: Names,
+    names: ExchangeableNames,
     base_m: f64,
-) -> Option<Reassigned> {
+) -> Option<ReassignmentErrors> {
     let exchanged = with_exchanged(all, names, |_| true);
     let mut swapped = vec![false; all.len()];
-    let packed = fitter.packed(all);
+    let packed = fitter.pack_values(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
         let errors = fitter.session(data, &packed).errors(&data.all_rows(), estimate);
         errors.iter().map(|error| fitter.squared_m2(error)).collect()
@@ -215,9 +228,9 @@ fn reassigned(
                 / all.len().max(1) as f64;
             let next: Vec<bool> =
                 kept.iter().zip(&other).map(|(kept, other)| other + margin < *kept).collect();
-            let data = sampled(&with_exchanged(all, names, |row| next[row]));
+            let data = subsample(&with_exchanged(all, names, |row| next[row]));
             let registered = fitter.roughly_registered(&data).0;
-            let (calibrated, misfit) = fitter.calibrated(&data, &registered, SHORT);
+            let (calibrated, misfit) = fitter.calibrate(&data, &registered, SHORT);
             estimate = calibrated;
             let unchanged = next == swapped;
             swapped = next;
@@ -248,7 +261,7 @@ fn reassigned(
 }
 
 /// The data with the names exchanged in the chosen rows that count.
-fn with_exchanged(all: &Dataset, names: Names, which: impl Fn(usize) -> bool) -> Dataset {
+fn with_exchanged(all: &Dataset, names: ExchangeableNames, which: impl Fn(usize) -> bool) -> Dataset {
     let mut data = all.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
         if which(row) && names.counts(observation) {
@@ -259,7 +272,7 @@ fn with_exchanged(all: &Dataset, names: Names, which: impl Fn(usize) -> bool) ->
 }
 
 /// Description of some of a pair's rows: from a row on, up to a row, or single rows.
-fn where_words(data: &Dataset, rows: &[u32], names: Names, concerned: &[u32]) -> String {
+fn where_words(data: &Dataset, rows: &[u32], names: ExchangeableNames, concerned: &[u32]) -> String {
     let own = |row: &u32| names.counts(&data.observations[*row as usize]);
     let own: Vec<u32> = rows.iter().copied().filter(own).collect();
     match concerned {

@@ -1,6 +1,6 @@
 //! Registrations and short calibrations by which hypotheses are compared, on a subsample of the rows.
 
-use super::change::{like, push};
+use super::change::{empty_like, push};
 use nalgebra::Vector3;
 
 use crate::gauge;
@@ -10,9 +10,12 @@ use crate::start::{
     Registration, clock_parameters, device_parameter, range_parameters, register, register_roughly,
     target_parameters,
 };
-use crate::state::{Chain, Estimate, Linkage, Packed, RowError, Session, Stand, delivered, sample_rows};
+use crate::state::{
+    Estimate, InstrumentMount, Linkage, PackedValues, RowChain, RowError, Session, nominal_estimate,
+    sample_rows,
+};
 use poecal_arm::lie::{Freedom, Pose, Screw};
-use poecal_model::measurement::{Dataset, Noise, Observation, Quantity, Stated};
+use poecal_model::measurement::{Dataset, Noise, Observation, Quantity, StatedDeviations};
 use poecal_model::robot::{Body, Joint, JointKind, Robot, Term, Tolerance};
 use poecal_numerics::solve::{Options, minimize};
 
@@ -85,7 +88,7 @@ impl<'a> Fitter<'a> {
         // The length is not taken from strokes in the data, whose unit may be wrong.
         let length_m = robot.reach_m() / 3.0;
         let noise = Noise::new(NOISE_M, NOISE_M / length_m);
-        let start = delivered(robot, data);
+        let start = nominal_estimate(robot, data);
         // With directions alone no smaller robot fits better.
         let has_lengths = [Quantity::Position, Quantity::Distance, Quantity::Contact, Quantity::Height];
         let weight = if has_lengths.iter().any(|&quantity| data.has(quantity)) { 1.0 } else { WEAK };
@@ -108,11 +111,12 @@ impl<'a> Fitter<'a> {
     fn spread_m(&self, data: &Dataset) -> f64 {
         let mut in_base = self.start.clone();
         (0..data.station_count()).for_each(|station| {
-            if matches!(in_base.tree.instruments().get(station), Some(Stand::On(Body::Base))) {
+            if matches!(in_base.tree.instruments().get(station), Some(InstrumentMount::On(Body::Base))) {
                 *in_base.device_mut(station) = Pose::identity();
             }
         });
-        let (linkage, packed, mut chain) = (Linkage::new(&in_base), self.packed(data), Chain::default());
+        let (linkage, packed, mut chain) =
+            (Linkage::new(&in_base), self.pack_values(data), RowChain::default());
         let mut place = |row: usize| {
             chain.evaluate(&linkage, &packed, row, &data.observations[row]);
             chain.target.translation
@@ -125,7 +129,7 @@ impl<'a> Fitter<'a> {
 
     /// Factor on errors of data whose targets move less than those of the original data: without a length of their own, smaller motions
     /// have smaller errors.
-    fn enlarged(&self, data: &Dataset) -> f64 {
+    fn error_scale(&self, data: &Dataset) -> f64 {
         let ratio = |(_, given): &(Prior, f64)| (given / self.spread_m(data).max(f64::MIN_POSITIVE)).max(1.0);
         self.constrained.as_ref().map_or(1.0, ratio)
     }
@@ -135,17 +139,17 @@ impl<'a> Fitter<'a> {
         3.0 * self.length_m
     }
 
-    pub(crate) fn packed(&self, data: &Dataset) -> Packed {
-        Packed::from_dataset(self.robot, data)
+    pub(crate) fn pack_values(&self, data: &Dataset) -> PackedValues {
+        PackedValues::from_dataset(self.robot, data)
     }
 
-    pub(crate) fn session<'b>(&'b self, data: &'b Dataset, packed: &'b Packed) -> Session<'b> {
+    pub(crate) fn session<'b>(&'b self, data: &'b Dataset, packed: &'b PackedValues) -> Session<'b> {
         let Fitter { robot, device_free, length_m, .. } = *self;
         Session::new(robot, data, packed, device_free).with_length(length_m)
     }
 
     /// Registers the nominal robot.
-    pub(crate) fn registered(&self, data: &Dataset) -> (Estimate, Misfit) {
+    pub(crate) fn register_nominal(&self, data: &Dataset) -> (Estimate, Misfit) {
         self.register(data, |registration| register(registration, &self.start).0)
     }
 
@@ -155,7 +159,7 @@ impl<'a> Fitter<'a> {
     }
 
     fn register(&self, data: &Dataset, by: impl Fn(&Registration<'_>) -> Estimate) -> (Estimate, Misfit) {
-        let packed = self.packed(data);
+        let packed = self.pack_values(data);
         let rows = data.all_rows();
         let registration = Registration {
             session: self.session(data, &packed),
@@ -170,7 +174,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// Fits the screws from a registration in a few iterations.
-    pub(crate) fn calibrated(
+    pub(crate) fn calibrate(
         &self,
         data: &Dataset,
         registered: &Estimate,
@@ -226,7 +230,7 @@ impl<'a> Fitter<'a> {
         mut free: Vec<Parameter>,
         iterations: usize,
     ) -> (Estimate, Misfit) {
-        let packed = self.packed(data);
+        let packed = self.pack_values(data);
         let rows = data.all_rows();
         let session = self.session(data, &packed);
         free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
@@ -244,13 +248,13 @@ impl<'a> Fitter<'a> {
     }
 
     /// Estimate and errors of the supplied data.
-    pub(crate) fn judged(&self, data: &Dataset) -> (Estimate, Score) {
-        let (start, registered) = self.registered(data);
-        let (mut estimate, mut calibrated) = self.calibrated(data, &start, LONG);
+    pub(crate) fn judge(&self, data: &Dataset) -> (Estimate, Score) {
+        let (start, registered) = self.register_nominal(data);
+        let (mut estimate, mut calibrated) = self.calibrate(data, &start, LONG);
         if self.is_constrained() {
             // Each row measures less, so that a fit ends in a local minimum more often; a start near nominal does not.
-            let near = self.with_strong_prior().calibrated(data, &start, LONG).0;
-            let (other, misfit) = self.calibrated(data, &near, LONG);
+            let near = self.with_strong_prior().calibrate(data, &start, LONG).0;
+            let (other, misfit) = self.calibrate(data, &near, LONG);
             if misfit.total_m < calibrated.total_m {
                 (estimate, calibrated) = (other, misfit);
             }
@@ -260,7 +264,7 @@ impl<'a> Fitter<'a> {
 
     /// True if the data need no diagnosis: a calibration explains them with each axis near nominal.
     pub(crate) fn is_sound(&self, data: &Dataset, calibrated: &Estimate) -> bool {
-        let errors = self.session(data, &self.packed(data)).errors(&data.all_rows(), calibrated);
+        let errors = self.session(data, &self.pack_values(data)).errors(&data.all_rows(), calibrated);
         let totals = errors.iter().map(|error| self.squared_m2(error));
         let mean = totals.clone().sum::<f64>() / errors.len().max(1) as f64;
         let most = totals.fold(0.0, f64::max);
@@ -273,7 +277,7 @@ impl<'a> Fitter<'a> {
         } else {
             Pose::identity()
         };
-        let moved = calibrated.rebased(&motion).screws();
+        let moved = calibrated.rebase(&motion).screws();
         let is_near = |(screw, joint): (&Screw, &Joint)| {
             let tilt = screw.direction().angle(&joint.screw.direction());
             let place = joint.frame.translation;
@@ -300,7 +304,7 @@ impl<'a> Fitter<'a> {
             rotation += error.square_rad2();
             turned += usize::from(error.has_angle());
         }
-        let (count, factor) = (errors.len().max(1) as f64, self.enlarged(session.data));
+        let (count, factor) = (errors.len().max(1) as f64, self.error_scale(session.data));
         Misfit {
             position_m: factor * (position / count).sqrt(),
             rotation_rad: factor * (rotation / turned.max(1) as f64).sqrt(),
@@ -310,22 +314,22 @@ impl<'a> Fitter<'a> {
 }
 
 /// Some rows of a data set, without stated noise.
-pub(crate) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
-    let mut taken = like(data);
+pub(crate) fn take_rows(data: &Dataset, rows: &[u32]) -> Dataset {
+    let mut taken = empty_like(data);
     for &row in rows {
         let observation = data.observations[row as usize];
-        let plain = Observation { stated: Stated::default(), noise_shape: None, ..observation };
+        let plain = Observation { stated: StatedDeviations::default(), noise_shape: None, ..observation };
         push(&mut taken, data.readings(row as usize), plain);
     }
     taken
 }
 
 /// The subsample of a data set.
-pub(crate) fn sampled(data: &Dataset) -> Dataset {
+pub(crate) fn subsample(data: &Dataset) -> Dataset {
     sample_of(data, &data.all_rows())
 }
 
 /// The subsample of some rows.
 pub(crate) fn sample_of(data: &Dataset, rows: &[u32]) -> Dataset {
-    taken(data, &sample_rows(rows, SAMPLE))
+    take_rows(data, &sample_rows(rows, SAMPLE))
 }

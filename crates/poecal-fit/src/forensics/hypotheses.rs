@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 use super::DiagnosisKind;
-use super::change::{Change, Stream};
+use super::change::{RowChange, ShiftedRows};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::{Joint, ReadingKind, Robot, level};
 
@@ -13,25 +13,25 @@ const MOST_FILES: usize = 6;
 
 /// A hypothetical mistake.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Hypothesis {
+pub(crate) struct MistakeHypothesis {
     pub(crate) kind: DiagnosisKind,
     /// Changes that undo it, one after the other.
-    pub(crate) changes: Vec<Change>,
+    pub(crate) changes: Vec<RowChange>,
     /// The change, as the subject of a sentence.
     pub(crate) action: String,
     /// Advice.
     pub(crate) advice: String,
 }
 
-impl Hypothesis {
-    pub(crate) fn new(kind: DiagnosisKind, change: Change, action: String, advice: String) -> Self {
-        Hypothesis { kind, changes: vec![change], action, advice }
+impl MistakeHypothesis {
+    pub(crate) fn new(kind: DiagnosisKind, change: RowChange, action: String, advice: String) -> Self {
+        MistakeHypothesis { kind, changes: vec![change], action, advice }
     }
 
     /// Factor on all measured lengths.
-    pub(crate) fn resized(&self) -> f64 {
+    pub(crate) fn size_factor(&self) -> f64 {
         let factor =
-            |change: &Change| if let Change::Resize(factor, _, true) = change { *factor } else { 1.0 };
+            |change: &RowChange| if let RowChange::Resize(factor, _, true) = change { *factor } else { 1.0 };
         self.changes.iter().map(factor).product()
     }
 
@@ -76,7 +76,7 @@ impl ReadingColumns {
 }
 
 /// Units of readings: degrees for radians and millimetres for metres, of all joints or of single ones.
-pub(crate) fn joint_units(columns: &ReadingColumns) -> Vec<Hypothesis> {
+pub(crate) fn joint_units(columns: &ReadingColumns) -> Vec<MistakeHypothesis> {
     let mut all = Vec::new();
     for (kind, factor, large, small) in [
         (ReadingKind::Angle, 180.0 / PI, "degrees", "radians"),
@@ -91,9 +91,9 @@ pub(crate) fn joint_units(columns: &ReadingColumns) -> Vec<Hypothesis> {
             let names: Vec<&str> = set.iter().map(|&column| columns.names[column].as_str()).collect();
             let names = names.join(", ");
             for (factor, meant, read) in [(1.0 / factor, large, small), (factor, small, large)] {
-                all.push(Hypothesis::new(
+                all.push(MistakeHypothesis::new(
                     DiagnosisKind::JointUnit,
-                    Change::Scale(set.clone(), factor),
+                    RowChange::Scale(set.clone(), factor),
                     format!("taking the readings of {names} as {meant} instead of {read}"),
                     format!("state the unit of {names} in the header"),
                 ));
@@ -104,11 +104,11 @@ pub(crate) fn joint_units(columns: &ReadingColumns) -> Vec<Hypothesis> {
 }
 
 /// One joint with the wrong sign.
-pub(crate) fn joint_signs(columns: &ReadingColumns) -> Vec<Hypothesis> {
+pub(crate) fn joint_signs(columns: &ReadingColumns) -> Vec<MistakeHypothesis> {
     let one = |(column, name): (usize, &String)| {
-        Hypothesis::new(
+        MistakeHypothesis::new(
             DiagnosisKind::JointSign,
-            Change::Scale(vec![column], -1.0),
+            RowChange::Scale(vec![column], -1.0),
             format!("counting {name} the other way"),
             format!("check the sign of {name} in the readings and the direction of its axis in the model"),
         )
@@ -117,15 +117,15 @@ pub(crate) fn joint_signs(columns: &ReadingColumns) -> Vec<Hypothesis> {
 }
 
 /// Two joint columns exchanged.
-pub(crate) fn joint_exchanges(columns: &ReadingColumns) -> Vec<Hypothesis> {
+pub(crate) fn joint_exchanges(columns: &ReadingColumns) -> Vec<MistakeHypothesis> {
     let mut all = Vec::new();
     for (b, second) in columns.names.iter().enumerate() {
         for (a, first) in columns.names.iter().enumerate().take(b) {
             // Exchanging a prismatic and a revolute joint would change units too.
             if columns.kinds[a] == columns.kinds[b] {
-                all.push(Hypothesis::new(
+                all.push(MistakeHypothesis::new(
                     DiagnosisKind::JointsSwapped,
-                    Change::Exchange(a, b),
+                    RowChange::Exchange(a, b),
                     format!("exchanging the readings of {first} and {second}"),
                     "check the order of the joint columns".to_owned(),
                 ));
@@ -137,7 +137,7 @@ pub(crate) fn joint_exchanges(columns: &ReadingColumns) -> Vec<Hypothesis> {
 
 /// A revolute joint's readings as sum or difference with those of the revolute joint before it. Some controllers state the third axis
 /// relative to the horizontal.
-pub(crate) fn joint_couplings(columns: &ReadingColumns) -> Vec<Hypothesis> {
+pub(crate) fn joint_couplings(columns: &ReadingColumns) -> Vec<MistakeHypothesis> {
     let turning = columns.columns_of_kind(ReadingKind::Angle);
     let mut all = Vec::new();
     for (&before, &column) in turning.iter().zip(turning.iter().skip(1)) {
@@ -155,12 +155,18 @@ pub(crate) fn toml_key(name: &str) -> String {
     if is_plain { name.to_owned() } else { format!("{name:?}") }
 }
 
-fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, factor: f64) -> Hypothesis {
+fn coupling(
+    columns: &ReadingColumns,
+    column: usize,
+    other: usize,
+    own: f64,
+    factor: f64,
+) -> MistakeHypothesis {
     let (name, before) = (columns.names[column].as_str(), columns.names[other].as_str());
     if columns.level == Some((other, column, factor)) && own == 1.0 {
-        return Hypothesis::new(
+        return MistakeHypothesis::new(
             DiagnosisKind::JointsCoupled,
-            Change::Combine { column, own, other, factor },
+            RowChange::Combine { column, own, other, factor },
             format!("counting {name} from the level instead of from the arm"),
             format!(
                 "check whether the controller states {name} so, as those of FANUC do: then write `third_axis = \"level\"` into a mapping file \
@@ -170,9 +176,9 @@ fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, fac
     }
     let signed = |value: f64| if value < 0.0 { "-" } else { "" };
     let joined = if factor < 0.0 { "less" } else { "plus" };
-    Hypothesis::new(
+    MistakeHypothesis::new(
         DiagnosisKind::JointsCoupled,
-        Change::Combine { column, own, other, factor },
+        RowChange::Combine { column, own, other, factor },
         format!(
             "taking {name} as {}its readings {joined} those of {before}",
             if own < 0.0 { "minus " } else { "" }
@@ -189,25 +195,25 @@ fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, fac
 }
 
 /// Measurements paired with readings of rows before or after.
-pub(crate) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
-    let one = |stream: Stream, by: i32| {
+pub(crate) fn row_shifts(targets: usize) -> Vec<MistakeHypothesis> {
+    let one = |stream: ShiftedRows, by: i32| {
         let rows = if by.abs() == 1 { "1 row".to_owned() } else { format!("{} rows", by.abs()) };
         let side = if by > 0 { "later" } else { "earlier" };
         let same = match stream {
-            Stream::Target if targets > 1 => " of the same target",
-            Stream::Target | Stream::File => "",
+            ShiftedRows::Target if targets > 1 => " of the same target",
+            ShiftedRows::Target | ShiftedRows::File => "",
         };
-        Hypothesis::new(
+        MistakeHypothesis::new(
             DiagnosisKind::RowShift,
-            Change::Shift(by, stream),
+            RowChange::Shift(by, stream),
             format!("pairing the readings of each row with the measurement {rows} {side}{same}"),
             "check how readings and measurements were brought together".to_owned(),
         )
     };
     let shifts = [1, -1, 2, -2, 3, -3];
-    let mut all: Vec<Hypothesis> = shifts.into_iter().map(|by| one(Stream::Target, by)).collect();
+    let mut all: Vec<MistakeHypothesis> = shifts.into_iter().map(|by| one(ShiftedRows::Target, by)).collect();
     if targets > 1 {
-        all.extend(shifts.into_iter().map(|by| one(Stream::File, by)));
+        all.extend(shifts.into_iter().map(|by| one(ShiftedRows::File, by)));
     }
     all
 }
@@ -227,13 +233,13 @@ const OTHER_LENGTHS: [(f64, &str); 10] = [
 ];
 
 /// Lengths of a quantity in another unit.
-pub(crate) fn length_units(of: Quantity, is_all: bool) -> Vec<Hypothesis> {
+pub(crate) fn length_units(of: Quantity, is_all: bool) -> Vec<MistakeHypothesis> {
     let is_position = of == Quantity::Position;
     let kind = if is_position { DiagnosisKind::PositionUnit } else { DiagnosisKind::LengthUnit };
     let one = |(factor, words): (f64, &str)| {
-        Hypothesis::new(
+        MistakeHypothesis::new(
             kind,
-            Change::Resize(factor, of, is_all),
+            RowChange::Resize(factor, of, is_all),
             format!("multiplying the {}s by {}", of.name(), factor_words(factor)),
             format!(
                 "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
@@ -249,7 +255,7 @@ fn factor_words(factor: f64) -> String {
 }
 
 /// Positions of one of several files in another unit than those of the others.
-pub(crate) fn file_units(data: &Dataset) -> Vec<Hypothesis> {
+pub(crate) fn file_units(data: &Dataset) -> Vec<MistakeHypothesis> {
     let mut files: Vec<u32> = data.observations.iter().map(|row| row.source.file).collect();
     files.sort_unstable();
     files.dedup();
@@ -259,10 +265,10 @@ pub(crate) fn file_units(data: &Dataset) -> Vec<Hypothesis> {
     let name = |file: u32| data.files.get(file as usize).map(|it| it.display().to_string());
     let of = |file: u32| {
         let name = name(file)?;
-        let one = move |whole: Hypothesis| {
-            let factor = whole.resized();
-            Hypothesis {
-                changes: vec![Change::ResizeFile(factor, file)],
+        let one = move |whole: MistakeHypothesis| {
+            let factor = whole.size_factor();
+            MistakeHypothesis {
+                changes: vec![RowChange::ResizeFile(factor, file)],
                 action: format!("multiplying the positions of {name} alone by {}", factor_words(factor)),
                 ..whole
             }
@@ -273,12 +279,12 @@ pub(crate) fn file_units(data: &Dataset) -> Vec<Hypothesis> {
 }
 
 /// One coordinate of positions in another unit than the other two.
-pub(crate) fn axis_units() -> Vec<Hypothesis> {
+pub(crate) fn axis_units() -> Vec<MistakeHypothesis> {
     let one = |(axis, (factor, words)): (usize, (f64, &str))| {
         let name = ["x", "y", "z"][axis];
-        Hypothesis::new(
+        MistakeHypothesis::new(
             DiagnosisKind::PositionUnit,
-            Change::ResizeAxis(axis, factor),
+            RowChange::ResizeAxis(axis, factor),
             format!("multiplying {name} alone by {}", factor_words(factor)),
             format!(
                 "state the unit of `{name}` in the header, since it looks as if {words} there, and not in the other two columns"
@@ -289,10 +295,10 @@ pub(crate) fn axis_units() -> Vec<Hypothesis> {
 }
 
 /// Distances that do not count from their anchor, or radii of other spheres.
-pub(crate) fn zeros() -> Hypothesis {
-    Hypothesis::new(
+pub(crate) fn zeros() -> MistakeHypothesis {
+    MistakeHypothesis::new(
         DiagnosisKind::DistanceZero,
-        Change::FreeZero,
+        RowChange::FreeZero,
         "taking the zero of the distances as unknown".to_owned(),
         "check what they count from, and whether the radius of a ball or the length of a hook is missing or counted twice \
          (`--free zero` finds it)"
@@ -301,11 +307,11 @@ pub(crate) fn zeros() -> Hypothesis {
 }
 
 /// Tilts in another unit. Mirrored tilts are those of the opposite direction, measured by a tool that is turned.
-pub(crate) fn tilt_units() -> Vec<Hypothesis> {
+pub(crate) fn tilt_units() -> Vec<MistakeHypothesis> {
     let unit = |factor: f64, meant: &str, read: &str| {
-        Hypothesis::new(
+        MistakeHypothesis::new(
             DiagnosisKind::TiltUnit,
-            Change::ScaleTilts(factor),
+            RowChange::ScaleTilts(factor),
             format!("taking the tilts as {meant} instead of {read}"),
             "state the unit of tilt_x and tilt_y in the header".to_owned(),
         )
@@ -314,17 +320,17 @@ pub(crate) fn tilt_units() -> Vec<Hypothesis> {
 }
 
 /// Quaternions in another order, and inverted poses.
-pub(crate) fn pose_forms() -> Vec<Hypothesis> {
+pub(crate) fn pose_forms() -> Vec<MistakeHypothesis> {
     let order = |places, was, read| {
-        Hypothesis::new(
+        MistakeHypothesis::new(
             DiagnosisKind::QuaternionOrder,
-            Change::Quaternion(places),
+            RowChange::Quaternion(places),
             format!("taking the quaternions in the order {was} instead of {read}"),
             "check the order of the quaternion columns".to_owned(),
         )
     };
     let inverse = |change, what: &str, expected| {
-        Hypothesis::new(DiagnosisKind::InvertedPose, change, format!("inverting the {what}"), expected)
+        MistakeHypothesis::new(DiagnosisKind::InvertedPose, change, format!("inverting the {what}"), expected)
     };
     let poses = "check which way they go, since device_from_target is expected \
                  (poses of the device in the target: `pose = \"target_from_device\"` in a mapping)";
@@ -333,13 +339,13 @@ pub(crate) fn pose_forms() -> Vec<Hypothesis> {
     vec![
         order([1, 2, 3, 0], "w, x, y, z", "x, y, z, w"),
         order([3, 0, 1, 2], "x, y, z, w", "w, x, y, z"),
-        inverse(Change::Invert, "poses", poses.to_owned()),
-        inverse(Change::Transpose, "orientations", turns.to_owned()),
+        inverse(RowChange::Invert, "poses", poses.to_owned()),
+        inverse(RowChange::Transpose, "orientations", turns.to_owned()),
     ]
 }
 
 /// Coordinates of a left-handed frame. With an unknown device frame, mirrored points are the same for every axis.
-pub(crate) fn mirrors(device_free: bool, turned: bool) -> Vec<Hypothesis> {
+pub(crate) fn mirrors(device_free: bool, turned: bool) -> Vec<MistakeHypothesis> {
     let negated = |axis: usize| {
         let mut signs = Vector3::new(1.0, 1.0, 1.0);
         signs[axis] = -1.0;
@@ -355,19 +361,19 @@ pub(crate) fn mirrors(device_free: bool, turned: bool) -> Vec<Hypothesis> {
     for (index, (mirror, words)) in axes.into_iter().enumerate() {
         if index == 0 || !device_free {
             let what = if turned { "positions and orientations" } else { "positions" };
-            all.push(mirrored(mirror, true, format!("mirroring the {what} ({words})")));
+            all.push(mirror_hypothesis(mirror, true, format!("mirroring the {what} ({words})")));
         }
         if turned {
-            all.push(mirrored(mirror, false, format!("mirroring the positions ({words})")));
+            all.push(mirror_hypothesis(mirror, false, format!("mirroring the positions ({words})")));
         }
     }
     all
 }
 
-fn mirrored(mirror: Matrix3<f64>, turns: bool, action: String) -> Hypothesis {
-    Hypothesis::new(
+fn mirror_hypothesis(mirror: Matrix3<f64>, turns: bool, action: String) -> MistakeHypothesis {
+    MistakeHypothesis::new(
         DiagnosisKind::LeftHanded,
-        Change::Mirror(mirror, turns),
+        RowChange::Mirror(mirror, turns),
         action,
         "check whether an axis of the measuring device has the wrong sign or two are exchanged, since a right-handed \
          frame is expected"
@@ -395,7 +401,7 @@ mod tests {
             let at = words.windows(4).position(|it| it == ["had", "been", "read", "as"]).unwrap();
             let ratio = metres(words[at - 1]) / metres(words[at + 4]);
             println!("{} read as {}: {ratio}", words[at - 1], words[at + 4]);
-            assert!((hypothesis.resized() / ratio - 1.0).abs() < 1e-12, "{}", hypothesis.advice);
+            assert!((hypothesis.size_factor() / ratio - 1.0).abs() < 1e-12, "{}", hypothesis.advice);
         }
         assert_eq!(all.len(), 10);
     }

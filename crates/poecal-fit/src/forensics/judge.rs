@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use super::boards::board_size;
-use super::change::Change;
+use super::change::RowChange;
 use super::conventions::conventions;
-use super::diagnosis::short;
-use super::few::FewTargets;
-use super::fitter::{Fitter, SHORT, Score, sampled};
+use super::diagnosis::format_short;
+use super::few_targets::FewTargets;
+use super::fitter::{Fitter, SHORT, Score, subsample};
 use super::hypotheses::{
-    Hypothesis, ReadingColumns, axis_units, file_units, joint_couplings, joint_exchanges, joint_signs,
+    MistakeHypothesis, ReadingColumns, axis_units, file_units, joint_couplings, joint_exchanges, joint_signs,
     joint_units, length_units, mirrors, pose_forms, row_shifts, tilt_units, zeros,
 };
 use super::scales::joint_scales;
@@ -62,9 +62,9 @@ struct Candidate {
 pub(crate) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) -> Option<Diagnosis> {
     let fitter = &*few.fitter;
     let columns = ReadingColumns::new(fitter.robot);
-    let sample = sampled(&few.data);
+    let sample = subsample(&few.data);
     let hypotheses = single_mistakes(fitter, &columns, &sample);
-    let of = |hypotheses: &[Hypothesis]| {
+    let of = |hypotheses: &[MistakeHypothesis]| {
         let (index, score) = best_of(few, all, &sample, base, hypotheses)?;
         Some((hypotheses[index].clone(), score))
     };
@@ -83,7 +83,11 @@ pub(crate) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
     Some(diagnosis(&best, base, &score))
 }
 
-fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Dataset) -> Vec<Hypothesis> {
+fn single_mistakes(
+    fitter: &Fitter<'_>,
+    columns: &ReadingColumns,
+    sample: &Dataset,
+) -> Vec<MistakeHypothesis> {
     let turned = sample.observations.iter().any(|row| row.measurement.orientation().is_some());
     let mut all = joint_units(columns);
     let placed = sample.observations.iter().any(|row| row.measurement.position().is_some());
@@ -120,7 +124,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
 }
 
 /// Hypothesis of distances that count from another zero, which a calibration may absorb.
-fn of_zeros(sample: &Dataset) -> Option<Hypothesis> {
+fn of_zeros(sample: &Dataset) -> Option<MistakeHypothesis> {
     let is_counted = |row: &Observation| {
         row.measurement.has_length_of(Quantity::Distance) && !row.measurement.function().zero_is_unknown
     };
@@ -130,16 +134,16 @@ fn of_zeros(sample: &Dataset) -> Option<Hypothesis> {
 
 /// A mistake of lengths in data that a calibration explains.
 pub(crate) fn of_lengths(few: &FewTargets<'_, '_>, all: &Dataset) -> Option<Diagnosis> {
-    let sample = sampled(&few.data);
+    let sample = subsample(&few.data);
     let zero = of_zeros(&sample)?;
     let few = few.with_weak_prior();
-    let base = few.fitter.judged(&sample).1;
+    let base = few.fitter.judge(&sample).1;
     let (_, score) = best_of(&few, all, &sample, &base, std::slice::from_ref(&zero))?;
     Some(diagnosis(&zero, &base, &score))
 }
 
 /// Two or three joints with wrong signs.
-fn sign_pairs(columns: &ReadingColumns) -> Vec<Hypothesis> {
+fn sign_pairs(columns: &ReadingColumns) -> Vec<MistakeHypothesis> {
     let count = columns.names.len();
     // With many joints, only neighbours are combined: the number of triples grows with the cube.
     let reach = if count > MANY_JOINTS { 3 } else { count };
@@ -153,12 +157,12 @@ fn sign_pairs(columns: &ReadingColumns) -> Vec<Hypothesis> {
     all
 }
 
-fn signs(columns: &ReadingColumns, members: Vec<usize>) -> Hypothesis {
+fn signs(columns: &ReadingColumns, members: Vec<usize>) -> MistakeHypothesis {
     let names: Vec<&str> = members.iter().map(|&column| columns.names[column].as_str()).collect();
     let names = names.join(", ");
-    Hypothesis::new(
+    MistakeHypothesis::new(
         DiagnosisKind::JointSign,
-        Change::Scale(members, -1.0),
+        RowChange::Scale(members, -1.0),
         format!("counting {names} the other way"),
         format!("check the signs of {names} in the readings and the directions of their axes in the model"),
     )
@@ -170,13 +174,17 @@ fn best_of(
     all: &Dataset,
     sample: &Dataset,
     base: &Score,
-    hypotheses: &[Hypothesis],
+    hypotheses: &[MistakeHypothesis],
 ) -> Option<(usize, Score)> {
     let fitter = &*few.fitter;
-    let rough = |(index, hypothesis): (usize, &Hypothesis)| {
+    let rough = |(index, hypothesis): (usize, &MistakeHypothesis)| {
         // Rows are shifted before targets and rows are sampled.
         let shifts = hypothesis.kind == DiagnosisKind::RowShift;
-        let data = if shifts { sampled(&few.among(hypothesis.apply(all))) } else { hypothesis.apply(sample) };
+        let data = if shifts {
+            subsample(&few.select_rows(hypothesis.apply(all)))
+        } else {
+            hypothesis.apply(sample)
+        };
         let (estimate, registered) = fitter.roughly_registered(&data);
         (index, data, estimate, registered)
     };
@@ -186,15 +194,15 @@ fn best_of(
     let mut judged: Vec<Candidate> = found
         .into_par_iter()
         .map(|(index, data, estimate, registered)| {
-            let calibrated = fitter.calibrated(&data, &estimate, SHORT).1;
-            let Hypothesis { kind, .. } = hypotheses[index];
-            let resized = hypotheses[index].resized();
+            let calibrated = fitter.calibrate(&data, &estimate, SHORT).1;
+            let MistakeHypothesis { kind, .. } = hypotheses[index];
+            let resized = hypotheses[index].size_factor();
             Candidate { index, kind, resized, data, score: Score { registered, calibrated } }
         })
         .collect();
     judged.sort_by(|a, b| fitter.merit(a).total_cmp(&fitter.merit(b)));
     judged.truncate(FINALISTS);
-    judged.par_iter_mut().for_each(|one| one.score = fitter.judged(&one.data).1);
+    judged.par_iter_mut().for_each(|one| one.score = fitter.judge(&one.data).1);
     judged.retain(|one| fitter.explains(base, one));
     let least = judged.iter().map(|one| fitter.merit(one)).fold(f64::INFINITY, f64::min);
     judged.retain(|one| fitter.merit(one) < ALIKE * least);
@@ -251,7 +259,7 @@ impl Fitter<'_> {
 }
 
 /// The diagnosis with its evidence.
-fn diagnosis(best: &Hypothesis, base: &Score, score: &Score) -> Diagnosis {
+fn diagnosis(best: &MistakeHypothesis, base: &Score, score: &Score) -> Diagnosis {
     let registered = base.registered.total_m / score.registered.total_m.max(f64::MIN_POSITIVE);
     let (which, before, after) = if registered > ZERO_GAIN {
         ("registered", &base.registered, &score.registered)
@@ -263,10 +271,10 @@ fn diagnosis(best: &Hypothesis, base: &Score, score: &Score) -> Diagnosis {
         && ratio(before.rotation_rad, after.rotation_rad) > 2.0 * ratio(before.position_m, after.position_m);
     let evidence = if turned {
         let (before, after) = (before.rotation_rad.to_degrees(), after.rotation_rad.to_degrees());
-        format!("{which} orientation error from {} to {} deg", short(before), short(after))
+        format!("{which} orientation error from {} to {} deg", format_short(before), format_short(after))
     } else {
         let (before, after) = (before.position_m * 1e3, after.position_m * 1e3);
-        format!("{which} error from {} to {} mm", short(before), short(after))
+        format!("{which} error from {} to {} mm", format_short(before), format_short(after))
     };
     Diagnosis {
         kind: best.kind,

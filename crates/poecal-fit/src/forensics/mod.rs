@@ -9,16 +9,16 @@ mod conventions;
 mod diagnosis;
 mod euler;
 mod exchange;
-mod few;
+mod few_targets;
 mod fitter;
 mod hypotheses;
 mod judge;
-mod parts;
-mod places;
+mod partial_mistakes;
+mod place_names;
 mod repeats;
 mod scales;
 mod targets;
-mod unnamed;
+mod unnamed_targets;
 mod zero;
 
 pub use diagnosis::{Diagnosis, DiagnosisKind};
@@ -26,8 +26,8 @@ pub use diagnosis::{Diagnosis, DiagnosisKind};
 use std::cell::LazyCell;
 
 use crate::state::{Estimate, sample_rows};
-use few::FewTargets;
-use fitter::{Fitter, sample_of, sampled, taken};
+use few_targets::FewTargets;
+use fitter::{Fitter, sample_of, subsample, take_rows};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use repeats::Repeats;
@@ -98,7 +98,7 @@ pub fn diagnose(
     }
     let of_all = found.iter().find(|it| it.is_of_input()).map(|it| 1e-3 * it.after_mm);
     if of_all.is_none_or(|after_m| after_m > judge::POOR * fitter.reach_m())
-        && let Some(of_part) = parts::diagnose(&fitter, data, &rows, options, of_all)
+        && let Some(of_part) = partial_mistakes::diagnose(&fitter, data, &rows, options, of_all)
     {
         found.retain(|it| !it.is_of_input());
         found.push(of_part);
@@ -138,14 +138,14 @@ fn of_rows(
     rows: &[u32],
     options: &DiagnosisOptions<'_>,
 ) -> Option<Diagnosis> {
-    let whole = taken(data, &sample_rows(rows, WHOLE));
+    let whole = take_rows(data, &sample_rows(rows, WHOLE));
     let of_lengths = || {
         if !fitter.is_constrained() {
             return None;
         }
-        let all = taken(data, rows);
+        let all = take_rows(data, rows);
         let few = FewTargets::new(fitter, &all);
-        places::known_length(fitter, data, &all).or_else(|| judge::of_lengths(&few, &all))
+        place_names::known_length(fitter, data, &all).or_else(|| judge::of_lengths(&few, &all))
     };
     if let Some(estimate) = options.calibrated
         && fitter.is_sound(&whole, estimate)
@@ -153,19 +153,20 @@ fn of_rows(
         return targets::names(fitter, data, estimate).or_else(of_lengths);
     }
     // A copy of all rows costs more than the fits.
-    let all = LazyCell::new(|| taken(data, rows));
+    let all = LazyCell::new(|| take_rows(data, rows));
     let many = (!FewTargets::are_all(data)).then(|| FewTargets::new(fitter, &all));
     let (estimate, base) = match &many {
-        Some(few) => few.fitter.judged(&sampled(&few.data)),
-        None => fitter.judged(&sample_of(data, rows)),
+        Some(few) => few.fitter.judge(&subsample(&few.data)),
+        None => fitter.judge(&sample_of(data, rows)),
     };
-    let placed = many.as_ref().map_or_else(|| estimate.clone(), |few| few.placed(fitter, &all, &estimate));
+    let placed =
+        many.as_ref().map_or_else(|| estimate.clone(), |few| few.place_others(fitter, &all, &estimate));
     if fitter.is_sound(&whole, &placed) {
         return targets::names(fitter, data, &placed).or_else(of_lengths);
     }
     let few = many.unwrap_or_else(|| FewTargets::new(fitter, &all));
     targets::rows(fitter, data, &all, rows, &base)
-        .or_else(|| places::names(fitter, data, &all, rows, &placed, &base))
-        .or_else(|| places::known_length(fitter, data, &all))
+        .or_else(|| place_names::names(fitter, data, &all, rows, &placed, &base))
+        .or_else(|| place_names::known_length(fitter, data, &all))
         .or_else(|| judge::diagnose(&few, &all, &base))
 }

@@ -1,8 +1,8 @@
 //! Rows that repeat or contradict each other.
 
-use super::diagnosis::short;
+use super::diagnosis::format_short;
 use super::fitter::Fitter;
-use super::unnamed::{self, contradiction_m};
+use super::unnamed_targets::{self, contradiction_m};
 use super::{Diagnosis, DiagnosisKind};
 use poecal_model::measurement::Dataset;
 
@@ -12,7 +12,7 @@ const NEAR: usize = 100;
 const NAMED: usize = 3;
 
 /// An earlier and a later row of one target with the same readings.
-type Pair = (u32, u32);
+type RepeatPair = (u32, u32);
 
 /// Findings on rows of one configuration.
 pub(crate) struct Repeats {
@@ -31,10 +31,10 @@ pub(crate) fn diagnose(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Rep
         (seen.station, seen.target)
     };
     let seen = |row: u32| &data.observations[row as usize].measurement;
-    let mut repeats = data.repeated(rows);
+    let mut repeats = data.group_repeated(rows);
     repeats.iter_mut().for_each(|group| group.sort_by_key(|&row| target(row)));
     let same = |a: &u32, b: &u32| target(*a) == target(*b);
-    let (mut repeated, mut contradicting): (Vec<Pair>, Vec<Pair>) = (Vec::new(), Vec::new());
+    let (mut repeated, mut contradicting): (Vec<RepeatPair>, Vec<RepeatPair>) = (Vec::new(), Vec::new());
     let mut furthest_m: f64 = 0.0;
     for group in repeats.iter().flat_map(|group| group.chunk_by(same)) {
         for (k, &row) in group.iter().enumerate().skip(1) {
@@ -52,12 +52,16 @@ pub(crate) fn diagnose(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Rep
     let groups = repeats.iter().flat_map(|group| group.chunk_by(same));
     Repeats {
         repeated: repetition(data, &repeated),
-        unnamed: if contradicting.is_empty() { None } else { unnamed::diagnose(fitter, data, groups) },
+        unnamed: if contradicting.is_empty() {
+            None
+        } else {
+            unnamed_targets::diagnose(fitter, data, groups)
+        },
         contradicting: contradiction(data, &contradicting, furthest_m * 1e3),
     }
 }
 
-fn repetition(data: &Dataset, repeated: &[Pair]) -> Option<Diagnosis> {
+fn repetition(data: &Dataset, repeated: &[RepeatPair]) -> Option<Diagnosis> {
     let what = match repeated.len() {
         0 => return None,
         1 => "1 row repeats another".to_owned(),
@@ -75,7 +79,7 @@ fn repetition(data: &Dataset, repeated: &[Pair]) -> Option<Diagnosis> {
     })
 }
 
-fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Option<Diagnosis> {
+fn contradiction(data: &Dataset, contradicting: &[RepeatPair], furthest_mm: f64) -> Option<Diagnosis> {
     let what = match contradicting.len() {
         0 => return None,
         1 => "1 row has".to_owned(),
@@ -88,7 +92,7 @@ fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Op
         kind: DiagnosisKind::DuplicateRows,
         statement: format!(
             "{what} the readings of another and contradicts it, by up to {} mm ({}): check which is right, and remove the other",
-            short(furthest_mm),
+            format_short(furthest_mm),
             pairs(data, contradicting, "against")
         ),
         rows,

@@ -1,9 +1,9 @@
 //! Readings that are too large or too small by factors, a factor for each joint: per cent of the range, or gears of another ratio.
 
 use super::DiagnosisKind;
-use super::change::Change;
+use super::change::RowChange;
 use super::fitter::{Fitter, LONG};
-use super::hypotheses::{Hypothesis, ReadingColumns, toml_key};
+use super::hypotheses::{MistakeHypothesis, ReadingColumns, toml_key};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{ReadingKind, Term};
 
@@ -20,7 +20,7 @@ pub(crate) fn joint_scales(
     fitter: &Fitter<'_>,
     columns: &ReadingColumns,
     data: &Dataset,
-) -> Option<Hypothesis> {
+) -> Option<MistakeHypothesis> {
     let count = columns.names.len();
     let own = |column: usize| columns.only_joint(fitter.robot, column);
     // Per cent of the range, read as degrees or as radians.
@@ -35,7 +35,7 @@ pub(crate) fn joint_scales(
     let (degrees, radians) = (of_range(1_f64.to_radians()), of_range(1.0));
     let joints: Vec<usize> = (0..count).filter_map(|column| Some(own(column)?.0)).collect();
     let fitted = [vec![1.0; count], degrees.clone(), radians.clone()].into_iter().map(|mut factors| {
-        let scaled = Change::Scales(factors.clone()).apply(data);
+        let scaled = RowChange::Scales(factors.clone()).apply(data);
         let (estimate, _) = fitter.roughly_registered(&scaled);
         let (estimate, misfit) = fitter.with_term(&scaled, &estimate, (&joints, Term::RATIO), LONG);
         for (column, factor) in factors.iter_mut().enumerate() {
@@ -60,7 +60,7 @@ pub(crate) fn joint_scales(
 }
 
 /// Hypothesis of some factors; `None` if each is near 1.
-fn describe(columns: &ReadingColumns, factors: Vec<f64>, is_per_cent: bool) -> Option<Hypothesis> {
+fn describe(columns: &ReadingColumns, factors: Vec<f64>, is_per_cent: bool) -> Option<MistakeHypothesis> {
     let off: Vec<(&str, f64)> = columns
         .names
         .iter()
@@ -84,9 +84,9 @@ fn describe(columns: &ReadingColumns, factors: Vec<f64>, is_per_cent: bool) -> O
     } else {
         "check their unit, and the ratios of gears"
     };
-    Some(Hypothesis::new(
+    Some(MistakeHypothesis::new(
         DiagnosisKind::JointScale,
-        Change::Scales(factors),
+        RowChange::Scales(factors),
         format!("multiplying the readings by factors ({})", words.join(", ")),
         format!("{why}; in a mapping file: `[joints]` and below it {}", lines.join(", ")),
     ))

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
-use super::diagnosis::short;
-use super::exchange::{Names, exchanged, starts};
-use super::few::{FewTargets, for_links};
-use super::fitter::{Fitter, Score, sampled, taken};
+use super::diagnosis::format_short;
+use super::exchange::{ExchangeableNames, find_exchange, starts};
+use super::few_targets::{FewTargets, for_links};
+use super::fitter::{Fitter, Score, subsample, take_rows};
 use super::{Diagnosis, DiagnosisKind};
 use crate::state::Estimate;
 use poecal_model::measurement::Dataset;
@@ -26,7 +26,8 @@ pub(crate) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Op
     let known = |target: usize| data.targets.get(target)?.as_ref().filter(|name| of_model.contains(name));
     let nominal = |target: usize| fitter.start.base_from_target.get(target).map(|pose| pose.translation);
     let place = |target: usize| found.base_from_target.get(target).map(|pose| pose.translation);
-    let moved = furthest(data.targets.len(), |target| Some((nominal(target)? - place(target)?).norm()));
+    let moved =
+        farthest_targets(data.targets.len(), |target| Some((nominal(target)? - place(target)?).norm()));
     for (k, &b) in moved.iter().enumerate() {
         for &a in moved.iter().take(k) {
             let (Some(first), Some(second)) = (known(a), known(b)) else { continue };
@@ -39,8 +40,8 @@ pub(crate) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Op
                 let statement = format!(
                     "exchanging the names of {first} and {second} brings them from {} to {} mm from their places in the \
                      model: check which is which",
-                    short(before_mm),
-                    short(after_mm)
+                    format_short(before_mm),
+                    format_short(after_mm)
                 );
                 let kind = DiagnosisKind::TargetsSwapped;
                 return Some(Diagnosis { kind, statement, rows: Vec::new(), before_mm, after_mm });
@@ -51,7 +52,7 @@ pub(crate) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Op
 }
 
 /// The targets that are farthest from nominal, in their order.
-fn furthest(count: usize, moved_m: impl Fn(usize) -> Option<f64>) -> Vec<usize> {
+fn farthest_targets(count: usize, moved_m: impl Fn(usize) -> Option<f64>) -> Vec<usize> {
     let mut targets: Vec<usize> = (0..count).collect();
     if count > MOVED {
         let moved: Vec<f64> = targets.iter().map(|&target| moved_m(target).unwrap_or(0.0)).collect();
@@ -72,21 +73,21 @@ pub(crate) fn rows(
 ) -> Option<Diagnosis> {
     let found = pairs(fitter, all).into_iter().filter_map(|pair| {
         if FewTargets::are_all(all) {
-            return exchanged(fitter, all, Names::Targets(pair.0, pair.1), base);
+            return find_exchange(fitter, all, ExchangeableNames::Targets(pair.0, pair.1), base);
         }
-        let few = FewTargets::with(fitter, all, &[pair.0, pair.1]);
-        let numbers = Names::Targets(few.number(pair.0)?, few.number(pair.1)?);
-        let base = few.fitter.judged(&sampled(&few.data)).1;
-        let mut found = exchanged(&few.fitter, &few.data, numbers, &base)?;
+        let few = FewTargets::with_targets(fitter, all, &[pair.0, pair.1]);
+        let numbers = ExchangeableNames::Targets(few.number(pair.0)?, few.number(pair.1)?);
+        let base = few.fitter.judge(&subsample(&few.data)).1;
+        let mut found = find_exchange(&few.fitter, &few.data, numbers, &base)?;
         let rows = few.rows(all);
         found.rows = found.rows.into_iter().filter_map(|row| rows.get(row).copied()).collect();
-        found.names = Names::Targets(pair.0, pair.1);
+        found.names = ExchangeableNames::Targets(pair.0, pair.1);
         Some(found)
     });
     let best = found.min_by(|a, b| a.error_m.total_cmp(&b.error_m))?;
     let name =
         |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
-    Some(best.told(data, rows, name))
+    Some(best.diagnosis(data, rows, name))
 }
 
 /// Pairs of targets that may be exchanged: all pairs of few targets, otherwise those with the most votes of single rows.
@@ -97,10 +98,10 @@ fn pairs(fitter: &Fitter<'_>, all: &Dataset) -> Vec<(usize, usize)> {
     }
     let mut votes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for range in starts(all) {
-        let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
+        let part = take_rows(all, &range.map(|row| row as u32).collect::<Vec<_>>());
         let few = FewTargets::new(fitter, &part);
-        let (estimate, _) = few.fitter.judged(&sampled(&few.data));
-        vote(fitter, all, &few.placed(fitter, &part, &estimate), &mut votes);
+        let (estimate, _) = few.fitter.judge(&subsample(&few.data));
+        vote(fitter, all, &few.place_others(fitter, &part, &estimate), &mut votes);
     }
     let mut pairs: Vec<((usize, usize), f64)> = votes.into_iter().collect();
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));

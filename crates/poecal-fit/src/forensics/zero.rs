@@ -3,9 +3,9 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::DiagnosisKind;
-use super::change::Change;
+use super::change::RowChange;
 use super::fitter::Fitter;
-use super::hypotheses::{Hypothesis, ReadingColumns};
+use super::hypotheses::{MistakeHypothesis, ReadingColumns};
 use crate::state::Sight;
 use poecal_model::measurement::{Dataset, Observation};
 use poecal_model::robot::{ReadingKind, Term};
@@ -18,7 +18,11 @@ const FITTED_STARTS: usize = 3;
 const FITTED_ITERATIONS: usize = 30;
 
 /// Best offset of each joint, if it is gross.
-pub(crate) fn joint_zeros(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &Dataset) -> Vec<Hypothesis> {
+pub(crate) fn joint_zeros(
+    fitter: &Fitter<'_>,
+    columns: &ReadingColumns,
+    data: &Dataset,
+) -> Vec<MistakeHypothesis> {
     let robot = fitter.robot;
     let own = |column: &usize| columns.only_joint(robot, *column).is_some();
     // An unknown device frame absorbs the offset of a joint that is before all others.
@@ -43,7 +47,7 @@ fn joint_zero(
     columns: &ReadingColumns,
     data: &Dataset,
     column: usize,
-) -> Option<Hypothesis> {
+) -> Option<MistakeHypothesis> {
     let name = columns.names.get(column)?;
     let (joint, of) = columns.only_joint(fitter.robot, column)?;
     let multiplier = of.reading.multiplier;
@@ -51,13 +55,13 @@ fn joint_zero(
     let starts: Vec<f64> =
         if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
     let rough = |by: f64| {
-        let (estimate, misfit) = fitter.roughly_registered(&Change::Add(column, by).apply(data));
+        let (estimate, misfit) = fitter.roughly_registered(&RowChange::Add(column, by).apply(data));
         (misfit.total_m, by, estimate)
     };
     let mut rough: Vec<_> = starts.into_iter().map(rough).collect();
     rough.sort_by(|a, b| a.0.total_cmp(&b.0));
     let fitted = rough.into_iter().take(FITTED_STARTS).map(|(_, start, estimate)| {
-        let data = Change::Add(column, start).apply(data);
+        let data = RowChange::Add(column, start).apply(data);
         let (fitted, misfit) =
             fitter.with_term(&data, &estimate, (&[joint], Term::OFFSET), FITTED_ITERATIONS);
         (misfit.total_m, start + fitted.coefficient(joint, Term::OFFSET) / multiplier)
@@ -69,9 +73,9 @@ fn joint_zero(
         (by.abs() > LEAST_SHARE * fitter.reach_m(), format!("{:.1} mm", by * 1e3))
     };
     (gross && by.is_finite()).then(|| {
-        Hypothesis::new(
+        MistakeHypothesis::new(
             DiagnosisKind::JointZero,
-            Change::Add(column, by),
+            RowChange::Add(column, by),
             format!("adding {words} to the readings of {name}"),
             format!("check the zero of {name} in the readings and in the model"),
         )

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 
-use super::equations::{Frames, UNKNOWNS};
-use super::noise::{Noise, Spread};
+use super::equations::{FramePair, UNKNOWNS};
+use super::noise::{FrameCovariance, PoseNoise};
 use poecal_arm::lie::{Pose, hat};
 use poecal_numerics::distributions::f_quantile;
 
@@ -13,13 +13,13 @@ const OUTSIDE: f64 = 0.05;
 /// A frame with its uncertainty.
 ///
 /// ```
-/// # use poecal_fit::hand_eye::Placed;
+/// # use poecal_fit::hand_eye::FrameEstimate;
 /// # use poecal_arm::lie::Pose;
-/// let placed = Placed { pose: Pose::identity(), ..Placed::default() };
+/// let placed = FrameEstimate { pose: Pose::identity(), ..FrameEstimate::default() };
 /// assert_eq!(placed.bound95_m, 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct FrameEstimate {
     /// Pose in its parent.
     pub pose: Pose,
     /// Distance of its origin from the true one that 95 % of such results do not exceed, metres.
@@ -32,30 +32,40 @@ pub struct Placed {
     pub sigma_rad: Vector3<f64>,
 }
 
-impl Default for Placed {
+impl Default for FrameEstimate {
     fn default() -> Self {
         let none = Vector3::zeros();
-        Placed { pose: Pose::identity(), bound95_m: 0.0, bound95_rad: 0.0, sigma_m: none, sigma_rad: none }
+        FrameEstimate {
+            pose: Pose::identity(),
+            bound95_m: 0.0,
+            bound95_rad: 0.0,
+            sigma_m: none,
+            sigma_rad: none,
+        }
     }
 }
 
 /// One of the two frames, in its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
+pub(crate) enum FrameSide {
     /// The outer frame, inverted: the camera in its parent.
     Camera,
     /// The inner frame: the target in its parent.
     Target,
 }
 
-type Map = SMatrix<f64, 6, 12>;
+type FrameJacobian = SMatrix<f64, 6, 12>;
 
 /// The frame of a side, and the linear map from a step of the unknowns to its shift and turn in its parent. The frames are those of
 /// `point` of the target.
-pub(crate) fn placed(frames: &Frames, point: &Vector3<f64>, side: Side) -> (Pose, Map) {
-    let mut map = Map::zeros();
+pub(crate) fn frame_of_side(
+    frames: &FramePair,
+    point: &Vector3<f64>,
+    side: FrameSide,
+) -> (Pose, FrameJacobian) {
+    let mut map = FrameJacobian::zeros();
     match side {
-        Side::Camera => {
+        FrameSide::Camera => {
             let pose = frames.outer.inverse();
             let turn = -pose.rotation;
             map.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
@@ -63,7 +73,7 @@ pub(crate) fn placed(frames: &Frames, point: &Vector3<f64>, side: Side) -> (Pose
             map.fixed_view_mut::<3, 3>(3, 3).copy_from(&turn);
             (pose, map)
         }
-        Side::Target => {
+        FrameSide::Target => {
             let turn = frames.inner.rotation;
             map.fixed_view_mut::<3, 3>(0, 6).copy_from(&Matrix3::identity());
             map.fixed_view_mut::<3, 3>(0, 9).copy_from(&(turn * hat(point)));
@@ -74,11 +84,16 @@ pub(crate) fn placed(frames: &Frames, point: &Vector3<f64>, side: Side) -> (Pose
 }
 
 /// The frame of a side with its bounds, from the rows of its fit.
-pub(crate) fn bounded(spread: &Spread, frames: &Frames, point: &Vector3<f64>, side: Side) -> Placed {
-    let (pose, map) = placed(frames, point, side);
-    let all = mapped(&map, &spread.covariance);
+pub(crate) fn bound_frame(
+    spread: &FrameCovariance,
+    frames: &FramePair,
+    point: &Vector3<f64>,
+    side: FrameSide,
+) -> FrameEstimate {
+    let (pose, map) = frame_of_side(frames, point, side);
+    let all = map_covariance(&map, &spread.covariance);
     let parts: Vec<(SMatrix<f64, 6, 6>, f64)> =
-        spread.by_part.iter().map(|(part, freedom)| (mapped(&map, part), *freedom)).collect();
+        spread.by_part.iter().map(|(part, freedom)| (map_covariance(&map, part), *freedom)).collect();
     let of = |at: usize| {
         let block = |of: &SMatrix<f64, 6, 6>| of.fixed_view::<3, 3>(at, at).into_owned();
         let by_part: Vec<(f64, f64)> =
@@ -86,11 +101,11 @@ pub(crate) fn bounded(spread: &Spread, frames: &Frames, point: &Vector3<f64>, si
         (length_within(&block(&all), &by_part), block(&all).diagonal().map(|it| it.max(0.0).sqrt()))
     };
     let ((bound95_m, sigma_m), (bound95_rad, sigma_rad)) = (of(0), of(3));
-    Placed { pose, bound95_m, bound95_rad, sigma_m, sigma_rad }
+    FrameEstimate { pose, bound95_m, bound95_rad, sigma_m, sigma_rad }
 }
 
 /// `M C Mᵀ`.
-pub(crate) fn mapped(map: &Map, covariance: &[f64]) -> SMatrix<f64, 6, 6> {
+pub(crate) fn map_covariance(map: &FrameJacobian, covariance: &[f64]) -> SMatrix<f64, 6, 6> {
     let covariance = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::from_row_slice(covariance);
     map * covariance * map.transpose()
 }
@@ -111,20 +126,20 @@ pub(crate) fn length_within(covariance: &Matrix3<f64>, parts: &[(f64, f64)]) -> 
 /// Ratio by which frames of two fits differ; above 1 they differ by more than noise. It is their squared distance, in units of its own
 /// standard deviation, over the value that chance exceeds with a probability. One side alone is compared.
 pub(crate) fn difference(
-    one: (&Frames, &Vector3<f64>, &Spread, &Noise),
-    other: (&Frames, &Vector3<f64>, &Spread, &Noise),
-    side: Side,
+    one: (&FramePair, &Vector3<f64>, &FrameCovariance, &PoseNoise),
+    other: (&FramePair, &Vector3<f64>, &FrameCovariance, &PoseNoise),
+    side: FrameSide,
     probability: f64,
 ) -> Option<f64> {
-    let (first, map) = placed(one.0, one.1, side);
-    let (second, second_map) = placed(other.0, other.1, side);
+    let (first, map) = frame_of_side(one.0, one.1, side);
+    let (second, second_map) = frame_of_side(other.0, other.1, side);
     let turn = poecal_arm::lie::rotation::log(&(second.rotation * first.rotation.transpose()));
     let shift = second.translation - first.translation;
-    let both = mapped(&map, &one.2.covariance) + mapped(&second_map, &other.2.covariance);
+    let both = map_covariance(&map, &one.2.covariance) + map_covariance(&second_map, &other.2.covariance);
     let step = nalgebra::DVector::from_iterator(6, shift.iter().chain(turn.iter()).copied());
     let matrix = DMatrix::from_fn(6, 6, |i, j| both[(i, j)]);
-    let squares = step.dot(&poecal_numerics::linalg::solved(matrix, &step)?) / 6.0;
-    let least = |noise: &Noise| noise.freedom.iter().copied().fold(f64::INFINITY, f64::min);
+    let squares = step.dot(&poecal_numerics::linalg::solve_symmetric(matrix, &step)?) / 6.0;
+    let least = |noise: &PoseNoise| noise.freedom.iter().copied().fold(f64::INFINITY, f64::min);
     let freedom = least(one.3).min(least(other.3)).clamp(1.0, 1e6);
     Some(squares / f_quantile(probability, 6.0, freedom))
 }

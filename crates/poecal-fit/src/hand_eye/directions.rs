@@ -4,8 +4,8 @@
 //! therefore determines only whether an odd number of three statements is wrong: the camera's mounting, the arm's list, the target's list. The
 //! wrong one follows from the positions that camera and target would have.
 
-use super::CameraPlace;
-use super::equations::{Frames, Pair};
+use super::CameraMounting;
+use super::equations::{FramePair, PosePair};
 use super::findings::{Finding, FindingKind};
 use super::fit::{STARTS, medians, start};
 use super::types::{Directions, HandEyeOptions};
@@ -14,11 +14,16 @@ use poecal_numerics::distributions::median;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// Pairs of two lists, read in these directions.
-pub(crate) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &Directions) -> Vec<Pair> {
-    let inverts = by.flange_inverted != (camera == CameraPlace::InHand);
+pub(crate) fn pairs(
+    flange: &[Pose],
+    target: &[Pose],
+    camera: CameraMounting,
+    by: &Directions,
+) -> Vec<PosePair> {
+    let inverts = by.flange_inverted != (camera == CameraMounting::InHand);
     let turned = |pose: &Pose, inverts: bool| if inverts { pose.inverse() } else { *pose };
     let both = flange.iter().zip(target);
-    both.map(|(arm, seen)| Pair { moved: turned(arm, inverts), seen: turned(seen, by.target_inverted) })
+    both.map(|(arm, seen)| PosePair { moved: turned(arm, inverts), seen: turned(seen, by.target_inverted) })
         .collect()
 }
 
@@ -26,7 +31,7 @@ pub(crate) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &
 const EXACT: f64 = 1e-6;
 
 /// Score of a fit: the sum of the logarithms of the median errors, with the frames and these errors, metres and radians.
-pub(crate) fn score(pairs: &[Pair]) -> Option<(f64, Frames, (f64, f64))> {
+pub(crate) fn score(pairs: &[PosePair]) -> Option<(f64, FramePair, (f64, f64))> {
     let frames = start(pairs, STARTS)?;
     let (shift, turn) = medians(pairs, &frames);
     Some((shift.max(EXACT).ln() + turn.max(EXACT).ln(), frames, (shift, turn)))
@@ -55,18 +60,18 @@ struct Distances {
 }
 
 impl Distances {
-    fn from_frames(frames: &Frames, flange: &[Pose], camera: CameraPlace) -> Self {
+    fn from_frames(frames: &FramePair, flange: &[Pose], camera: CameraMounting) -> Self {
         let (of_camera, of_target) = (frames.outer.translation.norm(), frames.inner.translation.norm());
         let (on_flange, in_base) = match camera {
-            CameraPlace::InHand => (of_camera, of_target),
-            CameraPlace::Beside => (of_target, of_camera),
+            CameraMounting::InHand => (of_camera, of_target),
+            CameraMounting::Beside => (of_target, of_camera),
         };
         let of_flange = median(flange.iter().map(|it| it.translation.norm())).unwrap_or_default();
         Distances { on_flange, in_base, of_flange }
     }
 
     /// The same distances with the mounted and the static object exchanged.
-    fn exchanged(self) -> Self {
+    fn exchange(self) -> Self {
         Distances { on_flange: self.in_base, in_base: self.on_flange, ..self }
     }
 
@@ -76,7 +81,7 @@ impl Distances {
     }
 
     /// Positions of both, in words.
-    fn words(self, camera: CameraPlace) -> String {
+    fn words(self, camera: CameraMounting) -> String {
         let mm = |metres: f64| 1e3 * metres;
         format!(
             "the {} {:.0} mm from the flange and the {} {:.0} mm from the base",
@@ -89,7 +94,7 @@ impl Distances {
 }
 
 /// Directions of the target's list that its poses allow: a camera sees objects in front of it.
-fn seen(target: &[Pose]) -> (bool, bool) {
+fn allowed_directions(target: &[Pose]) -> (bool, bool) {
     let is_before = |it: &Pose| it.translation.z > 0.0 && it.translation.xy().norm() < it.translation.z;
     let as_read = target.iter().all(is_before);
     let turned = target.iter().all(|it| is_before(&it.inverse()));
@@ -102,7 +107,7 @@ fn seen(target: &[Pose]) -> (bool, bool) {
 /// # Errors
 /// [`ErrorKind::Problem`] if the poses fit in no direction, or if the camera is at the other end. It is also the error if the data do
 /// not determine which of both is other than stated.
-pub(crate) fn found(
+pub(crate) fn find_directions(
     flange: &[Pose],
     target: &[Pose],
     options: &HandEyeOptions,
@@ -123,40 +128,40 @@ pub(crate) fn found(
         );
     };
     let better = as_inverted.filter(|(score, _, (_, turn))| *score < least - BETTER.ln() && *turn < NO_FIT);
-    let (may_be_as_read, may_be_turned) = seen(target);
+    let (may_be_as_read, may_be_turned) = allowed_directions(target);
     let target_is_open = options.target_inverted.is_none() && may_be_turned;
     let arm_is_open = options.flange_inverted.is_none();
     let Some((_, frames_inverted, _)) = better else {
         let distances = Distances::from_frames(&frames, flange, camera);
         let is_exchanged = !distances.is_plausible() && distances.on_flange > distances.in_base;
         let is_open = !stated && (arm_is_open || target_is_open);
-        return Ok((usual, (is_open && is_exchanged).then(|| exchanged(distances, camera))));
+        return Ok((usual, (is_open && is_exchanged).then(|| exchanged_finding(distances, camera))));
     };
     // These are the distances for the arm's list inverted. For the target's list inverted, and for the other end, camera and target are
     // exchanged.
     let distances = Distances::from_frames(&frames_inverted, flange, camera);
     let target_as_stated = options.target_inverted.is_some() || may_be_as_read;
     if arm_is_open && target_as_stated && distances.is_plausible() {
-        return Ok((inverted, Some(said(&inverted, camera))));
+        return Ok((inverted, Some(inverted_finding(&inverted, camera))));
     }
     let of_target = Directions { target_inverted: true, ..usual };
     if target_is_open && !may_be_as_read {
-        return Ok((of_target, Some(said(&of_target, camera))));
+        return Ok((of_target, Some(inverted_finding(&of_target, camera))));
     }
-    let is_certain = distances.exchanged().is_plausible() || !arm_is_open;
+    let is_certain = distances.exchange().is_plausible() || !arm_is_open;
     Err(at_other_end(distances, camera, (!is_certain && arm_is_open, target_is_open)))
 }
 
-fn other(camera: CameraPlace) -> CameraPlace {
+fn other_camera(camera: CameraMounting) -> CameraMounting {
     match camera {
-        CameraPlace::InHand => CameraPlace::Beside,
-        CameraPlace::Beside => CameraPlace::InHand,
+        CameraMounting::InHand => CameraMounting::Beside,
+        CameraMounting::Beside => CameraMounting::InHand,
     }
 }
 
 /// Error of a camera at the other end. `arm` and `target` are true for lists that may be inverted instead.
-fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool, bool)) -> Error {
-    let other = other(camera);
+fn at_other_end(distances: Distances, camera: CameraMounting, (arm, target): (bool, bool)) -> Error {
+    let other = other_camera(camera);
     let mut instead = Vec::new();
     if arm {
         instead.push("--flange flange-from-base if the poses of the arm are inverted");
@@ -171,7 +176,7 @@ fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool,
     ErrorKind::Problem.error(format!(
         "found poses that fit a camera {} ({}), and not one {}, expected those of --camera {}: run with --camera {}{instead}",
         place(other),
-        distances.exchanged().words(other),
+        distances.exchange().words(other),
         place(camera),
         camera.word(),
         other.word(),
@@ -179,8 +184,8 @@ fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool,
 }
 
 /// Finding of poses that fit as they are stated, but with camera and target at positions where the other one is more likely.
-fn exchanged(distances: Distances, camera: CameraPlace) -> Finding {
-    let other = other(camera);
+fn exchanged_finding(distances: Distances, camera: CameraMounting) -> Finding {
+    let other = other_camera(camera);
     let statement = format!(
         "found {}, as if both were exchanged: if the camera is {} and the poses of the arm are inverted, state --camera {} --flange \
          flange-from-base; if both lists are inverted, --flange flange-from-base --target target-from-camera; if neither, --flange \
@@ -192,20 +197,20 @@ fn exchanged(distances: Distances, camera: CameraPlace) -> Finding {
     Finding::new(FindingKind::Exchanged, statement, Vec::new())
 }
 
-fn place(camera: CameraPlace) -> &'static str {
+fn place(camera: CameraMounting) -> &'static str {
     match camera {
-        CameraPlace::InHand => "in the hand",
-        CameraPlace::Beside => "beside the robot",
+        CameraMounting::InHand => "in the hand",
+        CameraMounting::Beside => "beside the robot",
     }
 }
 
 /// Finding of a list that is inverted.
-fn said(directions: &Directions, camera: CameraPlace) -> Finding {
+fn inverted_finding(directions: &Directions, camera: CameraMounting) -> Finding {
     let what = match directions.flange_inverted {
         true => "the poses of the arm are inverted (flange from base)",
         false => "the poses of the target are inverted (target from camera)",
     };
-    let other = other(camera);
+    let other = other_camera(camera);
     let statement = format!(
         "{what}: so they fit, and not as base from flange and camera from target; they were inverted back. If the camera is {} instead, run with \
          --camera {}",

@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 
 /// A linear congruential generator of 64 bits.
-pub(crate) struct Draw(u64);
+pub(crate) struct LinearCongruential(u64);
 
-impl Draw {
+impl LinearCongruential {
     pub(crate) fn new(seed: u64) -> Self {
-        Draw(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1))
+        LinearCongruential(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1))
     }
 
     pub(crate) fn next(&mut self) -> u64 {
@@ -16,14 +16,14 @@ impl Draw {
     }
 
     /// A uniform number between 0 and 1.
-    pub(crate) fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform_number(&mut self) -> f64 {
         (self.next() as f64 + 0.5) / (1u64 << 53) as f64
     }
 
     /// A number of the standard normal distribution (Box-Muller transform).
     pub(crate) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * self.uniform().ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.uniform()).cos()
+        let radius = (-2.0 * self.uniform_number().ln()).sqrt();
+        radius * (std::f64::consts::TAU * self.uniform_number()).cos()
     }
 
     /// Three independent numbers of this standard deviation.
@@ -33,7 +33,7 @@ impl Draw {
     }
 
     /// A few different numbers below a count.
-    pub(crate) fn few(&mut self, few: usize, count: usize) -> Vec<usize> {
+    pub(crate) fn distinct_numbers(&mut self, few: usize, count: usize) -> Vec<usize> {
         let mut found = Vec::with_capacity(few);
         while found.len() < few.min(count) {
             let next = (self.next() % count.max(1) as u64) as usize;
@@ -46,7 +46,7 @@ impl Draw {
 }
 
 /// Errors of a pose, with these standard deviations, about axes.
-pub(crate) fn drawn(draw: &mut Draw, sigmas: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
+pub(crate) fn draw_errors(draw: &mut LinearCongruential, sigmas: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
     let numbers = sigmas.map(|sigma| sigma * draw.normal());
     (Vector3::new(numbers[0], numbers[1], numbers[2]), Vector3::new(numbers[3], numbers[4], numbers[5]))
 }

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
-use super::draw::Draw;
-use super::{CameraPlace, FindingKind, HandEyeOptions, Level, hand_eye};
+use super::draw::LinearCongruential;
+use super::{CameraMounting, FindingKind, HandEyeLevel, HandEyeOptions, hand_eye};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_testing::trials::trials;
 
 /// A simulated session of an arm of some reach.
 struct Session {
-    camera: CameraPlace,
+    camera: CameraMounting,
     on_flange: Pose,
     flange: Vec<Pose>,
     target: Vec<Pose>,
@@ -18,14 +18,14 @@ struct Session {
 /// An arm of 0.3 to 3 m. The mounted object is up to 0.5 m from the flange, at most 0.3 of the reach. The static object is at a usual position: a
 /// board within reach, a camera up to twice as far. Every second board has its z axis towards the camera.
 fn session(seed: u64) -> Session {
-    let mut draw = Draw::new(seed + 71);
-    let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
-    let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();
+    let mut draw = LinearCongruential::new(seed + 71);
+    let camera = [CameraMounting::InHand, CameraMounting::Beside][seed as usize % 2];
+    let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform_number();
     let reach = 0.3 * 10f64.powf(between(0.0, 1.0));
     let held = between(0.02, 1.0) * 0.5f64.min(0.3 * reach);
     let (around, height) = (between(-2.0, 2.0), between(-0.2, 0.5) * reach);
-    let away = reach * if camera == CameraPlace::InHand { between(0.35, 0.9) } else { between(0.8, 1.9) };
-    let far = reach * if camera == CameraPlace::InHand { between(0.25, 0.6) } else { 0.0 };
+    let away = reach * if camera == CameraMounting::InHand { between(0.35, 0.9) } else { between(0.8, 1.9) };
+    let far = reach * if camera == CameraMounting::InHand { between(0.25, 0.6) } else { 0.0 };
     let noise = 10f64.powf(between(-4.0, -2.5));
     let side = [std::f64::consts::PI, 0.0][seed as usize / 2 % 2];
     let count = 10 + (seed % 3) as usize * 5;
@@ -33,9 +33,11 @@ fn session(seed: u64) -> Session {
     let stays = Vector3::new(away * around.cos(), away * around.sin(), height);
     let mut found = Session { camera, on_flange, flange: Vec::new(), target: Vec::new() };
     let in_base = match camera {
-        CameraPlace::InHand => Pose::new(rotation::exp(&draw.vector(0.3)) * rotation::about(0, side), stays),
+        CameraMounting::InHand => {
+            Pose::new(rotation::exp(&draw.vector(0.3)) * rotation::about(0, side), stays)
+        }
         // The camera looks at the middle of the arm's range.
-        CameraPlace::Beside => {
+        CameraMounting::Beside => {
             let middle = Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
             Pose::new(rotation::shortest_arc(&Vector3::z(), &(middle - stays).normalize()), stays)
         }
@@ -46,13 +48,13 @@ fn session(seed: u64) -> Session {
         }
         let turn = rotation::exp(&draw.vector(0.35));
         let (seen, base_from_flange) = match camera {
-            CameraPlace::InHand => {
+            CameraMounting::InHand => {
                 let place = Vector3::new(0.0, 0.0, far) + draw.vector(0.12 * far);
                 // The board faces the camera, from above.
                 let seen = Pose::new(turn * rotation::about(0, std::f64::consts::PI - side), place);
                 (seen, in_base * seen.inverse() * on_flange.inverse())
             }
-            CameraPlace::Beside => {
+            CameraMounting::Beside => {
                 let middle =
                     Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
                 let place = in_base.inverse().act(&(middle + draw.vector(0.15 * reach)));
@@ -87,9 +89,9 @@ enum End {
 }
 
 impl Session {
-    fn ended(
+    fn end_session(
         &self,
-        camera: CameraPlace,
+        camera: CameraMounting,
         inverted: bool,
         (flange, target): (Option<bool>, Option<bool>),
     ) -> (End, String) {
@@ -97,9 +99,9 @@ impl Session {
         let options = HandEyeOptions { camera, flange_inverted: flange, target_inverted: target };
         match hand_eye(&arm.into(), &self.target.clone().into(), &options, &|row| format!("row {row}")) {
             Err(error) => (End::Refused, error.to_string()),
-            Ok(found) if found.level == Level::DoNotUse => (End::Refused, found.reasons.join("; ")),
+            Ok(found) if found.level == HandEyeLevel::DoNotUse => (End::Refused, found.reasons.join("; ")),
             Ok(found) => {
-                let (shift, turn) = found.on_flange.pose.apart(&self.on_flange);
+                let (shift, turn) = found.on_flange.pose.distance_and_angle(&self.on_flange);
                 let is_right = camera == self.camera && shift < 0.1 * self.reach() && turn < 0.2;
                 let said =
                     found.findings.iter().map(|it| it.statement.clone()).collect::<Vec<_>>().join("; ");
@@ -115,10 +117,10 @@ impl Session {
         self.flange.iter().map(|it| it.translation.norm()).fold(0.0, f64::max)
     }
 
-    fn other(&self) -> CameraPlace {
+    fn other_camera(&self) -> CameraMounting {
         match self.camera {
-            CameraPlace::InHand => CameraPlace::Beside,
-            CameraPlace::Beside => CameraPlace::InHand,
+            CameraMounting::InHand => CameraMounting::Beside,
+            CameraMounting::Beside => CameraMounting::InHand,
         }
     }
 }
@@ -133,13 +135,13 @@ fn a_camera_at_the_other_end_is_never_a_result() {
     let mut accepted = 0;
     for seed in trials.seeds() {
         let (session, known) = (session(seed), KNOWN[seed as usize / 2 % KNOWN.len()]);
-        let (end, said) = session.ended(session.camera, false, known);
+        let (end, said) = session.end_session(session.camera, false, known);
         if end != End::Right {
             println!("{seed} {:?}, right end: {said}", session.camera);
         }
         assert!(end != End::Wrong, "{seed}: {said}");
         accepted += usize::from(end == End::Right);
-        let (end, said) = session.ended(session.other(), false, known);
+        let (end, said) = session.end_session(session.other_camera(), false, known);
         assert!(end == End::Refused, "{seed} {:?}, {known:?}: {said}", session.camera);
         assert!(said.contains(&format!("run with --camera {}", session.camera.word())), "{seed}: {said}");
     }
@@ -153,19 +155,19 @@ fn inverted_poses_are_inverted_back_or_refused() {
     for known in KNOWN.into_iter().filter(|it| it.0.is_none()) {
         let (mut right, mut refused) = (0, 0);
         for (seed, session) in sessions.iter().enumerate() {
-            match session.ended(session.camera, true, known) {
+            match session.end_session(session.camera, true, known) {
                 (End::Right, _) => right += 1,
                 (End::Refused, said) => {
                     assert!(said.contains("--flange flange-from-base"), "{seed}: {said}");
                     refused += 1;
                     // The statement is followed.
-                    let (end, said) = session.ended(session.camera, true, (Some(true), known.1));
+                    let (end, said) = session.end_session(session.camera, true, (Some(true), known.1));
                     assert!(end == End::Right, "{seed}: {said}");
                 }
                 (End::Wrong, said) => panic!("{seed} {:?}, {known:?}: {said}", session.camera),
             }
             // Two statements are wrong, and the poses fit: the positions of both frames reveal it.
-            let (end, said) = session.ended(session.other(), true, known);
+            let (end, said) = session.end_session(session.other_camera(), true, known);
             assert!(end == End::Refused, "{seed} {:?}: {said}", session.camera);
             assert!(
                 said.contains(&format!("--camera {} --flange flange-from-base", session.camera.word())),

@@ -17,7 +17,7 @@ pub(crate) const NUMBERS: usize = 6;
 
 /// One pose of the arm, and the target pose that the camera measured there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
+pub(crate) struct PosePair {
     /// Motion that the arm states.
     pub(crate) moved: Pose,
     /// `camera_from_target`.
@@ -26,37 +26,37 @@ pub(crate) struct Pair {
 
 /// The two unknown frames.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frames {
+pub(crate) struct FramePair {
     pub(crate) outer: Pose,
     pub(crate) inner: Pose,
 }
 
-impl Frames {
+impl FramePair {
     /// Predicted measurement of the camera.
-    pub(crate) fn predicted(&self, moved: &Pose) -> Pose {
+    pub(crate) fn predict(&self, moved: &Pose) -> Pose {
         self.outer * *moved * self.inner
     }
 
     /// Frames after a step. For the outer frame, shift and turn are in the camera's axes. For the inner one, the shift is in its parent's
     /// axes, and the turn in its own.
-    pub(crate) fn stepped(&self, step: &[f64]) -> Frames {
+    pub(crate) fn step_by(&self, step: &[f64]) -> FramePair {
         let at = |k: usize| Vector3::from_fn(|row, _| step.get(k + row).copied().unwrap_or(0.0));
         let outer = Pose::new(rotation::exp(&at(3)) * self.outer.rotation, self.outer.translation + at(0));
         let inner = Pose::new(self.inner.rotation * rotation::exp(&at(9)), self.inner.translation + at(6));
-        Frames { outer: outer.orthonormalized(), inner: inner.orthonormalized() }
+        FramePair { outer: outer.orthonormalized(), inner: inner.orthonormalized() }
     }
 }
 
 /// Axes of a picture's errors: two across the line of sight, one along it.
 pub(crate) fn sight_axes(seen: &Pose) -> Matrix3<f64> {
     let along = seen.translation.try_normalize(1e-12).unwrap_or_else(Vector3::z);
-    let across = rotation::perpendicular(&along);
+    let across = rotation::perpendicular_to(&along);
     Matrix3::from_rows(&[across.transpose(), along.cross(&across).transpose(), along.transpose()])
 }
 
 /// Measured minus predicted: metres across, across and along the line of sight, then radians about the same axes.
-pub(crate) fn errors(pair: &Pair, frames: &Frames) -> [f64; NUMBERS] {
-    let predicted = frames.predicted(&pair.moved);
+pub(crate) fn errors(pair: &PosePair, frames: &FramePair) -> [f64; NUMBERS] {
+    let predicted = frames.predict(&pair.moved);
     let axes = sight_axes(&pair.seen);
     let shift = axes * (pair.seen.translation - predicted.translation);
     let turn = axes * rotation::log(&(pair.seen.rotation * predicted.rotation.transpose()));
@@ -64,7 +64,7 @@ pub(crate) fn errors(pair: &Pair, frames: &Frames) -> [f64; NUMBERS] {
 }
 
 /// Derivatives of the predicted numbers, row by row.
-pub(crate) fn derivatives(pair: &Pair, frames: &Frames) -> [[f64; UNKNOWNS]; NUMBERS] {
+pub(crate) fn derivatives(pair: &PosePair, frames: &FramePair) -> [[f64; UNKNOWNS]; NUMBERS] {
     let axes = sight_axes(&pair.seen);
     let turned = frames.outer.rotation * pair.moved.rotation;
     let arm = frames.outer.rotation * pair.moved.act(&frames.inner.translation);
@@ -81,14 +81,14 @@ pub(crate) fn derivatives(pair: &Pair, frames: &Frames) -> [[f64; UNKNOWNS]; NUM
 
 /// Normal equations: the upper triangle of `JᵀWJ` in a square, and `JᵀWe`.
 #[derive(Clone, Debug)]
-pub(crate) struct Normal {
+pub(crate) struct FrameEquations {
     pub(crate) gram: Vec<f64>,
     pub(crate) gradient: Vec<f64>,
 }
 
-impl Normal {
+impl FrameEquations {
     pub(crate) fn zero() -> Self {
-        Normal { gram: vec![0.0; UNKNOWNS * UNKNOWNS], gradient: vec![0.0; UNKNOWNS] }
+        FrameEquations { gram: vec![0.0; UNKNOWNS * UNKNOWNS], gradient: vec![0.0; UNKNOWNS] }
     }
 
     /// Adds a number with its derivatives and weight.
@@ -109,8 +109,11 @@ impl Normal {
 }
 
 /// Normal equations of rows with their weights of the six numbers.
-pub(crate) fn normal<'a>(rows: impl Iterator<Item = (&'a Pair, [f64; NUMBERS])>, frames: &Frames) -> Normal {
-    let mut normal = Normal::zero();
+pub(crate) fn normal<'a>(
+    rows: impl Iterator<Item = (&'a PosePair, [f64; NUMBERS])>,
+    frames: &FramePair,
+) -> FrameEquations {
+    let mut normal = FrameEquations::zero();
     for (pair, weights) in rows {
         let errors = errors(pair, frames);
         for ((row, error), weight) in derivatives(pair, frames).iter().zip(errors).zip(weights) {
@@ -126,14 +129,18 @@ const STEPS: usize = 30;
 const SMALL: f64 = 1e-13;
 
 /// Frames that fit rows best by the weights of their numbers (Gauss-Newton). `None` if the rows do not determine them.
-pub(crate) fn minimised(pairs: &[Pair], start: Frames, weights: &[f64; NUMBERS]) -> Option<Frames> {
+pub(crate) fn minimize_frames(
+    pairs: &[PosePair],
+    start: FramePair,
+    weights: &[f64; NUMBERS],
+) -> Option<FramePair> {
     let mut frames = start;
     for _ in 0..STEPS {
         let normal = normal(pairs.iter().map(|pair| (pair, *weights)), &frames);
         // Undetermined directions stay at their start.
         let damping = 1e-12 * (0..UNKNOWNS).map(|k| normal.gram[k * (UNKNOWNS + 1)]).fold(0.0, f64::max);
         let step = cholesky_solve(&cholesky(&normal.gram, UNKNOWNS, damping)?, &normal.gradient);
-        frames = frames.stepped(&step);
+        frames = frames.step_by(&step);
         if step.iter().all(|it| it.abs() < SMALL) {
             break;
         }
@@ -154,7 +161,7 @@ fn twice_sine(r: &Matrix3<f64>) -> Vector3<f64> {
 
 /// Frames in closed form: the orientations from relative rotations (park1994handeye), the positions from a linear system. `None` if the
 /// positions are not determined at all.
-pub(crate) fn in_closed_form(pairs: &[&Pair]) -> Option<Frames> {
+pub(crate) fn in_closed_form(pairs: &[&PosePair]) -> Option<FramePair> {
     let mut correlation = Matrix3::zeros();
     for (k, one) in pairs.iter().enumerate() {
         // All pairs if there are few poses, otherwise those at some distances.
@@ -190,5 +197,5 @@ pub(crate) fn in_closed_form(pairs: &[&Pair]) -> Option<Frames> {
     }
     let found = cholesky_solve(&cholesky(&gram, 6, 1e-9 * pairs.len() as f64)?, &right);
     let at = |k: usize| Vector3::from_fn(|row, _| found[k + row]);
-    Some(Frames { outer: Pose::new(outer, at(0)), inner: Pose::new(inner, at(3)) })
+    Some(FramePair { outer: Pose::new(outer, at(0)), inner: Pose::new(inner, at(3)) })
 }

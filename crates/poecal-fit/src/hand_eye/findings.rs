@@ -65,7 +65,7 @@ impl Finding {
 }
 
 /// Row numbers as in messages, the first of many.
-pub(crate) fn listed(rows: &[usize], names: &dyn Fn(usize) -> String) -> String {
+pub(crate) fn list_rows(rows: &[usize], names: &dyn Fn(usize) -> String) -> String {
     const MOST: usize = 8;
     let words: Vec<String> = rows.iter().take(MOST).map(|row| names(*row)).collect();
     let more = rows.len().saturating_sub(MOST);

@@ -3,11 +3,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::draw::Draw;
+use super::draw::LinearCongruential;
 use super::equations::{
-    Frames, NUMBERS, Pair, UNKNOWNS, derivatives, errors, in_closed_form, minimised, sight_axes,
+    FramePair, NUMBERS, PosePair, UNKNOWNS, derivatives, errors, in_closed_form, minimize_frames, sight_axes,
 };
-use super::noise::Noise;
+use super::noise::PoseNoise;
 use poecal_arm::lie::{Pose, hat};
 use poecal_numerics::distributions::{chi_square_median, f_quantile, median};
 use poecal_numerics::linalg::{cholesky, cholesky_solve};
@@ -31,9 +31,9 @@ const ROWS_OF_POINT: usize = 6;
 
 /// A finished fit.
 #[derive(Clone, Debug)]
-pub(crate) struct Fit {
-    pub(crate) frames: Frames,
-    pub(crate) noise: Noise,
+pub(crate) struct HandEyeFit {
+    pub(crate) frames: FramePair,
+    pub(crate) noise: PoseNoise,
     /// For each row, true if it counts.
     pub(crate) kept: Vec<bool>,
     /// Point of the target, in its frame, whose position and orientation are measured independently of each other.
@@ -42,17 +42,22 @@ pub(crate) struct Fit {
     slack: f64,
 }
 
-impl Fit {
+impl HandEyeFit {
     /// Fit of all rows. `None` if they do not determine the frames.
-    pub(crate) fn from_pairs(pairs: &[Pair]) -> Option<Self> {
-        Fit::from_start(pairs, start(pairs, STARTS)?)
+    pub(crate) fn from_pairs(pairs: &[PosePair]) -> Option<Self> {
+        HandEyeFit::from_start(pairs, start(pairs, STARTS)?)
     }
 
     /// The same fit from a start.
-    pub(crate) fn from_start(pairs: &[Pair], frames: Frames) -> Option<Self> {
+    pub(crate) fn from_start(pairs: &[PosePair], frames: FramePair) -> Option<Self> {
         let noise = rough_noise(pairs, &frames);
-        let mut fit =
-            Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros(), slack: SLACK };
+        let mut fit = HandEyeFit {
+            frames,
+            noise,
+            kept: vec![true; pairs.len()],
+            point: Vector3::zeros(),
+            slack: SLACK,
+        };
         fit.choose(pairs);
         fit.settle(pairs, false)?;
         // Two rounds, since the first point is found with the noise of the origin.
@@ -68,26 +73,26 @@ impl Fit {
     }
 
     /// The same model fitted to other rows, which all count, from these frames and with this noise.
-    pub(crate) fn again(&self, pairs: &[Pair]) -> Option<Frames> {
+    pub(crate) fn refit(&self, pairs: &[PosePair]) -> Option<FramePair> {
         let about = self.seen_about(pairs);
         let weights = self.noise.weights();
-        minimised(&about, self.frames, &weights)
+        minimize_frames(&about, self.frames, &weights)
     }
 
     /// Measured poses of the point, in place of the target's origin.
-    pub(crate) fn seen_about(&self, pairs: &[Pair]) -> Vec<Pair> {
+    pub(crate) fn seen_about(&self, pairs: &[PosePair]) -> Vec<PosePair> {
         let to = Pose::from_translation(self.point);
-        pairs.iter().map(|it| Pair { seen: it.seen * to, ..*it }).collect()
+        pairs.iter().map(|it| PosePair { seen: it.seen * to, ..*it }).collect()
     }
 
     /// The frames of the target itself.
-    pub(crate) fn own_frames(&self) -> Frames {
+    pub(crate) fn own_frames(&self) -> FramePair {
         self.of_target(&self.frames)
     }
 
     /// Frames of the point as those of the target itself.
-    pub(crate) fn of_target(&self, frames: &Frames) -> Frames {
-        Frames { inner: frames.inner * Pose::from_translation(-self.point), ..*frames }
+    pub(crate) fn of_target(&self, frames: &FramePair) -> FramePair {
+        FramePair { inner: frames.inner * Pose::from_translation(-self.point), ..*frames }
     }
 
     fn move_point(&mut self, further: Vector3<f64>) {
@@ -97,19 +102,19 @@ impl Fit {
     }
 
     /// Rows that count.
-    pub(crate) fn rows(&self, pairs: &[Pair]) -> Vec<Pair> {
+    pub(crate) fn rows(&self, pairs: &[PosePair]) -> Vec<PosePair> {
         pairs.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(pair, _)| *pair).collect()
     }
 
     /// Rounds of fit, noise and outliers until no row changes.
-    fn settle(&mut self, pairs: &[Pair], parts: bool) -> Option<()> {
+    fn settle(&mut self, pairs: &[PosePair], parts: bool) -> Option<()> {
         let about = self.seen_about(pairs);
         for round in 0..ROUNDS {
             let rows = self.rows(&about);
             let weights = self.noise.weights();
-            self.frames = minimised(&rows, self.frames, &weights)?;
+            self.frames = minimize_frames(&rows, self.frames, &weights)?;
             let before = self.noise.variance.clone();
-            self.noise = self.noise.estimated(&rows, &self.frames).unwrap_or_else(|| self.noise.clone());
+            self.noise = self.noise.estimate_from(&rows, &self.frames).unwrap_or_else(|| self.noise.clone());
             if parts {
                 self.noise = self.noise.apart_where_they_differ(&rows, &self.frames);
             }
@@ -122,13 +127,13 @@ impl Fit {
         }
         let rows = self.rows(&about);
         let weights = self.noise.weights();
-        self.frames = minimised(&rows, self.frames, &weights)?;
+        self.frames = minimize_frames(&rows, self.frames, &weights)?;
         Some(())
     }
 
     /// Chooses the rows that count. True if the choice changed.
-    fn choose(&mut self, about: &[Pair]) -> bool {
-        let cut = self.cut(about.len());
+    fn choose(&mut self, about: &[PosePair]) -> bool {
+        let cut = self.outlier_limit(about.len());
         let distances = self.distances(about);
         let mut kept: Vec<bool> = distances.iter().map(|distance| *distance <= cut).collect();
         // Enough rows stay that a test is possible.
@@ -145,13 +150,13 @@ impl Fit {
     }
 
     /// Mean square of a row's errors beyond which it is an outlier.
-    fn cut(&self, rows: usize) -> f64 {
+    fn outlier_limit(&self, rows: usize) -> f64 {
         let freedom = self.noise.freedom.iter().copied().fold(f64::INFINITY, f64::min).min(1e6);
         self.slack * f_quantile(LOST / rows as f64, NUMBERS as f64, freedom)
     }
 
     /// Mean square of the errors of each row in units of their expected scatter, which is smaller for a fitted row.
-    pub(crate) fn distances(&self, about: &[Pair]) -> Vec<f64> {
+    pub(crate) fn distances(&self, about: &[PosePair]) -> Vec<f64> {
         let leverages = self.leverages(about);
         let rows = about.iter().zip(&self.kept).zip(leverages);
         rows.map(|((pair, kept), leverage)| {
@@ -162,12 +167,12 @@ impl Fit {
     }
 
     /// Mean variance of the six predicted numbers of each row in units of their noise.
-    fn leverages(&self, about: &[Pair]) -> Vec<f64> {
+    fn leverages(&self, about: &[PosePair]) -> Vec<f64> {
         let weights = self.noise.weights();
         let rows = self.rows(about);
         let normal = super::equations::normal(rows.iter().map(|it| (it, weights)), &self.frames);
         let Some(known) = normal.covariance() else { return vec![0.0; about.len()] };
-        let of = |pair: &Pair| {
+        let of = |pair: &PosePair| {
             let numbers = derivatives(pair, &self.frames).into_iter().zip(weights);
             let sum: f64 = numbers.map(|(row, weight)| weight * variance_along(&known, &row)).sum();
             sum / NUMBERS as f64
@@ -177,7 +182,7 @@ impl Fit {
 
     /// A point of the target, relative to the present one, at which errors of position are independent of those of orientation. `None` if
     /// it is no better than the present one by more than chance.
-    fn better_point(&self, rows: &[Pair]) -> Option<Vector3<f64>> {
+    fn better_point(&self, rows: &[PosePair]) -> Option<Vector3<f64>> {
         if rows.len() < ROWS_OF_POINT {
             return None;
         }
@@ -232,17 +237,17 @@ pub(crate) fn sizes(errors: &[f64; NUMBERS]) -> (f64, f64) {
 }
 
 /// Medians of lengths and angles of errors.
-pub(crate) fn medians(pairs: &[Pair], frames: &Frames) -> (f64, f64) {
+pub(crate) fn medians(pairs: &[PosePair], frames: &FramePair) -> (f64, f64) {
     let all: Vec<(f64, f64)> = pairs.iter().map(|pair| sizes(&errors(pair, frames))).collect();
     let of = |values: Vec<f64>| median(values.into_iter()).unwrap_or_default();
     (of(all.iter().map(|it| it.0).collect()), of(all.iter().map(|it| it.1).collect()))
 }
 
 /// The best start by the median errors of all poses: from all of them, or from a few.
-pub(crate) fn start(pairs: &[Pair], starts: usize) -> Option<Frames> {
-    let all: Vec<&Pair> = pairs.iter().collect();
-    let mut best: Option<(f64, Frames)> = None;
-    let mut consider = |frames: Option<Frames>| {
+pub(crate) fn start(pairs: &[PosePair], starts: usize) -> Option<FramePair> {
+    let all: Vec<&PosePair> = pairs.iter().collect();
+    let mut best: Option<(f64, FramePair)> = None;
+    let mut consider = |frames: Option<FramePair>| {
         let Some(frames) = frames else { return };
         let (shift, turn) = medians(pairs, &frames);
         let score = shift.max(1e-12).ln() + turn.max(1e-12).ln();
@@ -251,20 +256,23 @@ pub(crate) fn start(pairs: &[Pair], starts: usize) -> Option<Frames> {
         }
     };
     consider(in_closed_form(&all));
-    let mut draw = Draw::new(1);
+    let mut draw = LinearCongruential::new(1);
     for _ in 0..if pairs.len() > POSES_OF_START { starts } else { 0 } {
-        let few: Vec<&Pair> =
-            draw.few(POSES_OF_START, pairs.len()).into_iter().filter_map(|k| pairs.get(k)).collect();
+        let few: Vec<&PosePair> = draw
+            .distinct_numbers(POSES_OF_START, pairs.len())
+            .into_iter()
+            .filter_map(|k| pairs.get(k))
+            .collect();
         consider(in_closed_form(&few));
     }
     best.map(|(_, frames)| frames)
 }
 
 /// Noise by the median errors of a start.
-fn rough_noise(pairs: &[Pair], frames: &Frames) -> Noise {
+fn rough_noise(pairs: &[PosePair], frames: &FramePair) -> PoseNoise {
     let (shift, turn) = medians(pairs, frames);
     let scale = 1.0 / chi_square_median(3).sqrt();
     // Four poses have no redundancy.
     let few = (1.0 + 4.0 / pairs.len() as f64).min(2.0);
-    Noise::from_standard_deviations(few * scale * shift, few * scale * turn)
+    PoseNoise::from_standard_deviations(few * scale * shift, few * scale * turn)
 }

@@ -7,8 +7,8 @@
 
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
-use super::equations::{Pair, UNKNOWNS, derivatives, errors, sight_axes};
-use super::fit::Fit;
+use super::equations::{PosePair, UNKNOWNS, derivatives, errors, sight_axes};
+use super::fit::HandEyeFit;
 use super::other_lens::other_lens;
 use super::readings::PoseList;
 use super::unknown_lens::{FoundLens, UnknownLens};
@@ -27,7 +27,7 @@ const CHANCE: f64 = 1e-3;
 const SAYS: f64 = 1e-3;
 
 /// A lens that is estimated with the frames, and its part in their covariance.
-pub(crate) struct Joint {
+pub(crate) struct LensCoupling {
     pub(crate) found: FoundLens,
     /// Covariance of the frames by that of the lens, and its degrees of freedom.
     pub(crate) covariance: Vec<f64>,
@@ -68,7 +68,7 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
             .to_owned()
     };
     let (search, start) = LensSearch::from_pictures(pictures).ok_or_else(refuse)?;
-    let mut state = search.alone(&start).ok_or_else(refuse)?;
+    let mut state = search.lens_alone(&start).ok_or_else(refuse)?;
     // A flat board has two poses; with another lens the other one may be better.
     for _ in 0..2 {
         for at in 0..state.pictures.all.len() {
@@ -79,12 +79,12 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
             }
         }
         let best: Option<Vec<Pose>> = state.pictures.all.iter().map(|it| it.poses.first().copied()).collect();
-        let same = search.stepped(&state, &best.ok_or_else(refuse)?, &DVector::zeros(state.step.len()));
-        state = search.alone(&same).ok_or_else(refuse)?;
+        let same = search.step_by(&state, &best.ok_or_else(refuse)?, &DVector::zeros(state.step.len()));
+        state = search.lens_alone(&same).ok_or_else(refuse)?;
     }
     let search = search.with_spread_of(&state);
-    let same = search.stepped(&state, &state.poses, &DVector::zeros(state.step.len()));
-    let state = search.alone(&same).ok_or_else(refuse)?;
+    let same = search.step_by(&state, &state.poses, &DVector::zeros(state.step.len()));
+    let state = search.lens_alone(&same).ok_or_else(refuse)?;
     let mut known = state.pictures.clone();
     known.cameras.iter_mut().for_each(|it| it.is_guessed = false);
     let list = PoseList::of_pictures(&known)?;
@@ -92,47 +92,51 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
 }
 
 /// A fit with its lens: the poses measured through it, and the joint uncertainty.
-pub(crate) struct WithLens {
+pub(crate) struct FitWithLens {
     pub(crate) target: Vec<Pose>,
-    pub(crate) fit: Fit,
-    pub(crate) joint: Option<Joint>,
+    pub(crate) fit: HandEyeFit,
+    pub(crate) joint: Option<LensCoupling>,
 }
 
-impl WithLens {
+impl FitWithLens {
     /// A fit of poses whose lens is known.
-    pub(crate) fn known(target: Vec<Pose>, fit: Fit) -> Self {
-        WithLens { target, fit, joint: None }
+    pub(crate) fn from_known_lens(target: Vec<Pose>, fit: HandEyeFit) -> Self {
+        FitWithLens { target, fit, joint: None }
     }
 }
 
 /// A fit of the frames, with the rows that count (as measured about its point) and their numbers in the list.
-pub(crate) type Fitted = (Fit, Vec<(usize, Pair)>);
+pub(crate) type LensFit = (HandEyeFit, Vec<(usize, PosePair)>);
 /// Fits the frames to poses of the target, from an earlier fit if there is one.
-pub(crate) type Fitting<'a> = dyn Fn(&[Pose], Option<&Fit>) -> Option<Fitted> + 'a;
+pub(crate) type FrameFitter<'a> = dyn Fn(&[Pose], Option<&HandEyeFit>) -> Option<LensFit> + 'a;
 
 /// Refits frames and lens together, from poses of the target by the lens of the pictures alone.
-pub(crate) fn together(lens: &UnknownLens, target: &[Pose], fitted: &Fitting<'_>) -> Option<WithLens> {
+pub(crate) fn refit_with_lens(
+    lens: &UnknownLens,
+    target: &[Pose],
+    fitted: &FrameFitter<'_>,
+) -> Option<FitWithLens> {
     let UnknownLens { search, state: alone } = lens;
-    let chosen = lens.chosen(target);
+    let chosen = lens.choose_poses(target);
     let starts: Vec<Pose> = chosen.iter().map(|it| it.0).collect();
     let along = |state: &LensState| -> Vec<Pose> {
         state.poses.iter().zip(&chosen).map(|(pose, (_, turn))| *pose * *turn).collect()
     };
-    let mut state = search.stepped(alone, &starts, &DVector::zeros(alone.step.len()));
+    let mut state = search.step_by(alone, &starts, &DVector::zeros(alone.step.len()));
     let (mut fit, mut rows) = fitted(&along(&state), None)?;
     let mut first: Option<f64> = None;
-    let mut normal = Normal::from_rows(&state, &fit, &rows)?;
+    let mut normal = LensEquations::from_rows(&state, &fit, &rows)?;
     for _ in 0..ROUNDS {
         let (by, gain) = normal.step()?;
         if first.is_none() {
-            first = Some(normal.apart(&state, &fit)?);
+            first = Some(normal.lens_distance(&state, &fit)?);
         }
         if gain < LEAST {
             break;
         }
-        state = search.stepped(&state, &state.poses, &by);
+        state = search.step_by(&state, &state.poses, &by);
         (fit, rows) = fitted(&along(&state), Some(&fit))?;
-        normal = Normal::from_rows(&state, &fit, &rows)?;
+        normal = LensEquations::from_rows(&state, &fit, &rows)?;
     }
     let apart = first.unwrap_or(1.0);
     let inverse = |matrix: &DMatrix<f64>| -> Option<DMatrix<f64>> {
@@ -163,11 +167,15 @@ pub(crate) fn together(lens: &UnknownLens, target: &[Pose], fitted: &Fitting<'_>
     };
     let freedom = if apart > 1.0 { (state.step.len() as f64).min(alone.freedom) } else { alone.freedom };
     let covariance = covariance.transpose().as_slice().to_vec();
-    Some(WithLens { target: along(&state), fit, joint: Some(Joint { found, covariance, freedom, larger }) })
+    Some(FitWithLens {
+        target: along(&state),
+        fit,
+        joint: Some(LensCoupling { found, covariance, freedom, larger }),
+    })
 }
 
 /// Normal equations of the lens, by pictures and arm, at the best frames.
-struct Normal {
+struct LensEquations {
     /// Information of pictures and arm on the lens.
     information: DMatrix<f64>,
     /// Part of the arm in the information, and its gradient.
@@ -178,8 +186,8 @@ struct Normal {
     follow: DMatrix<f64>,
 }
 
-impl Normal {
-    fn from_rows(state: &LensState, fit: &Fit, rows: &[(usize, Pair)]) -> Option<Self> {
+impl LensEquations {
+    fn from_rows(state: &LensState, fit: &HandEyeFit, rows: &[(usize, PosePair)]) -> Option<Self> {
         let count = state.step.len();
         let weights = fit.noise.weights();
         let (mut frames, mut mixed) = (DMatrix::zeros(UNKNOWNS, UNKNOWNS), DMatrix::zeros(UNKNOWNS, count));
@@ -203,25 +211,25 @@ impl Normal {
         let of_arm = of_arm - mixed.transpose() * &follow;
         let information = &state.information + &of_arm;
         let pull = &state.pull + &arm_pull;
-        Some(Normal { information, of_arm, arm_pull, pull, follow })
+        Some(LensEquations { information, of_arm, arm_pull, pull, follow })
     }
 
     /// Best step of the lens, with its gain in squared standard deviations.
     fn step(&self) -> Option<(DVector<f64>, f64)> {
-        let by = linalg::solved(self.information.clone(), &self.pull)?;
+        let by = linalg::solve_symmetric(self.information.clone(), &self.pull)?;
         let gain = by.dot(&self.pull);
         Some((by, gain))
     }
 
     /// Difference of the arm's lens from that of the pictures, at the latter, in units of its noise; 1 if noise explains it. The arm's gradient has
     /// the variance `K + K G⁻¹ K`, with its own information K and that of the pictures G. Only directions that the arm determines count.
-    fn apart(&self, state: &LensState, fit: &Fit) -> Option<f64> {
+    fn lens_distance(&self, state: &LensState, fit: &HandEyeFit) -> Option<f64> {
         let count = state.step.len();
         // The units are those in which the pictures' information is 1: G = L Lᵀ.
-        let whitened = linalg::whitened(state.information.clone(), &self.of_arm)?;
-        let twice = linalg::whitened(state.information.clone(), &whitened.transpose())?;
+        let whitened = linalg::whiten_columns(state.information.clone(), &self.of_arm)?;
+        let twice = linalg::whiten_columns(state.information.clone(), &whitened.transpose())?;
         let pull = DMatrix::from_column_slice(count, 1, self.arm_pull.as_slice());
-        let pull = linalg::whitened(state.information.clone(), &pull)?;
+        let pull = linalg::whiten_columns(state.information.clone(), &pull)?;
         let (values, vectors) = linalg::symmetric_eigen(twice.as_slice(), count);
         let (mut squares, mut directions) = (0.0, 0.0);
         for (k, &says) in values.iter().enumerate().filter(|(_, value)| **value > SAYS) {
@@ -237,7 +245,7 @@ impl Normal {
 
 /// Derivatives of the six numbers of a row by the lens: shift of the measured point, and turn, in the axes of the line of sight. `follow`
 /// is that of the board's origin.
-fn in_sight(pair: &Pair, board: &Pose, follow: &Matrix6xX<f64>) -> Matrix6xX<f64> {
+fn in_sight(pair: &PosePair, board: &Pose, follow: &Matrix6xX<f64>) -> Matrix6xX<f64> {
     let axes = sight_axes(&pair.seen);
     let arm = pair.seen.translation - board.translation;
     let mut to = Matrix6::zeros();

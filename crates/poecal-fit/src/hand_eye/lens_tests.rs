@@ -2,8 +2,8 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::draw::Draw;
-use super::{CameraPlace, HandEye, HandEyeOptions, Level, PoseList, hand_eye};
+use super::draw::LinearCongruential;
+use super::{CameraMounting, HandEye, HandEyeLevel, HandEyeOptions, PoseList, hand_eye};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::camera::{
     Board, Camera, Corner, Distortion, FlatView, Lens, Picture, Pictures, guessed_lens, middle,
@@ -12,7 +12,7 @@ use poecal_testing::trials::trials;
 
 /// A session of pictures with its truth.
 struct Session {
-    camera: CameraPlace,
+    camera: CameraMounting,
     on_flange: Pose,
     in_base: Pose,
     lens: Lens,
@@ -30,14 +30,14 @@ struct Views {
     deep: f64,
 }
 
-fn between(draw: &mut Draw, from: f64, to: f64) -> f64 {
-    from + (to - from) * draw.uniform()
+fn draw_between(draw: &mut LinearCongruential, from: f64, to: f64) -> f64 {
+    from + (to - from) * draw.uniform_number()
 }
 
 /// A lens with its focal length, the size of its picture, and its centre, pixels.
-fn drawn_lens(draw: &mut Draw) -> (Lens, f64, [f64; 2], [f64; 2]) {
-    let focal = between(draw, 700.0, 1800.0);
-    let size = [focal * between(draw, 0.8, 1.2), focal * between(draw, 0.6, 0.8)].map(f64::round);
+fn drawn_lens(draw: &mut LinearCongruential) -> (Lens, f64, [f64; 2], [f64; 2]) {
+    let focal = draw_between(draw, 700.0, 1800.0);
+    let size = [focal * draw_between(draw, 0.8, 1.2), focal * draw_between(draw, 0.6, 0.8)].map(f64::round);
     let mut off = || 0.01 * size[0] * draw.normal();
     let centre = [0.5 * size[0] + off(), 0.5 * size[1] + off()];
     let bent = [0.1, 0.02, 5e-4, 5e-4].map(|sigma| sigma * draw.normal());
@@ -51,12 +51,12 @@ fn drawn_lens(draw: &mut Draw) -> (Lens, f64, [f64; 2], [f64; 2]) {
 
 /// A camera of some lens that sees a board of some size, with noise of corners and of the arm.
 fn session(seed: u64, views: Views) -> Session {
-    let mut draw = Draw::new(seed + 911);
-    let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
+    let mut draw = LinearCongruential::new(seed + 911);
+    let camera = [CameraMounting::InHand, CameraMounting::Beside][seed as usize % 2];
     let (lens, focal, size, centre) = drawn_lens(&mut draw);
-    let board = Board::chessboard("board", [9, 7], between(&mut draw, 0.02, 0.04)).unwrap();
-    let noise_px = between(&mut draw, 0.05, 0.4);
-    let arm = (between(&mut draw, 5e-5, 4e-4), between(&mut draw, 1e-4, 8e-4));
+    let board = Board::chessboard("board", [9, 7], draw_between(&mut draw, 0.02, 0.04)).unwrap();
+    let noise_px = draw_between(&mut draw, 0.05, 0.4);
+    let arm = (draw_between(&mut draw, 5e-5, 4e-4), draw_between(&mut draw, 1e-4, 8e-4));
     let on_flange = Pose::new(rotation::exp(&draw.vector(1.0)), draw.vector(0.06));
     let in_base = Pose::new(rotation::exp(&draw.vector(0.5)), Vector3::new(0.7, 0.1, 0.2) + draw.vector(0.1));
     let far = 2.5 * focal * board.radius_m() / size[1];
@@ -67,14 +67,16 @@ fn session(seed: u64, views: Views) -> Session {
         if found.flange.len() == views.count {
             break;
         }
-        let about = between(&mut draw, 0.0, std::f64::consts::TAU);
-        let tilt = between(&mut draw, 0.0, views.tilt);
+        let about = draw_between(&mut draw, 0.0, std::f64::consts::TAU);
+        let tilt = draw_between(&mut draw, 0.0, views.tilt);
         let turn = rotation::exp(&(Vector3::new(about.cos(), about.sin(), 0.0) * tilt))
-            * rotation::about(2, between(&mut draw, -1.5, 1.5));
-        let place =
-            Vector2::new(between(&mut draw, 0.2, 0.8) * size[0], between(&mut draw, 0.2, 0.8) * size[1]);
+            * rotation::about(2, draw_between(&mut draw, -1.5, 1.5));
+        let place = Vector2::new(
+            draw_between(&mut draw, 0.2, 0.8) * size[0],
+            draw_between(&mut draw, 0.2, 0.8) * size[1],
+        );
         let ray = Vector3::new((place.x - centre[0]) / focal, (place.y - centre[1]) / focal, 1.0);
-        let depth = far * (1.0 + views.deep * between(&mut draw, -1.0, 1.0));
+        let depth = far * (1.0 + views.deep * draw_between(&mut draw, -1.0, 1.0));
         let seen = Pose::new(turn, ray * depth - turn * middle);
         let pixels: Option<Vec<Vector2<f64>>> = board
             .points
@@ -91,8 +93,8 @@ fn session(seed: u64, views: Views) -> Session {
         };
         let corners = (0..).zip(pixels).map(&mut corner).collect();
         let base_from_flange = match camera {
-            CameraPlace::InHand => in_base * seen.inverse() * on_flange.inverse(),
-            CameraPlace::Beside => in_base * seen * on_flange.inverse(),
+            CameraMounting::InHand => in_base * seen.inverse() * on_flange.inverse(),
+            CameraMounting::Beside => in_base * seen * on_flange.inverse(),
         };
         // The arm's error is about the mounted object, the pictures' error about the camera.
         let error = Pose::new(rotation::exp(&draw.vector(arm.1)), draw.vector(arm.0));
@@ -125,7 +127,7 @@ impl Session {
         pictures.all.iter_mut().zip(found).for_each(|(picture, poses)| picture.poses = poses);
     }
 
-    fn solved(&self) -> HandEye {
+    fn solve(&self) -> HandEye {
         let target = PoseList::of_pictures(&self.pictures).unwrap();
         hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::new(self.camera), &|row| {
             format!("row {row}")
@@ -135,8 +137,8 @@ impl Session {
 
     fn truth(&self) -> &Pose {
         match self.camera {
-            CameraPlace::InHand => &self.on_flange,
-            CameraPlace::Beside => &self.in_base,
+            CameraMounting::InHand => &self.on_flange,
+            CameraMounting::Beside => &self.in_base,
         }
     }
 }
@@ -153,10 +155,10 @@ fn bounds_hold_with_an_unknown_lens_as_often_as_promised() {
             deep: 0.25,
         };
         let session = session(seed, views);
-        let found = session.solved();
+        let found = session.solve();
         let lens = found.lens.as_ref().unwrap();
         let camera = found.camera_frame();
-        let (shift, turn) = camera.pose.apart(session.truth());
+        let (shift, turn) = camera.pose.distance_and_angle(session.truth());
         inside_m += usize::from(shift <= camera.bound95_m);
         inside_rad += usize::from(turn <= camera.bound95_rad);
         known += usize::from(shift <= lens.known_bound95_m);
@@ -167,7 +169,7 @@ fn bounds_hold_with_an_unknown_lens_as_often_as_promised() {
         alone += of(&lens.alone[0]);
         apart += usize::from(lens.apart > 1.0);
         wider.push(camera.bound95_m / lens.known_bound95_m);
-        assert_ne!(found.level, Level::DoNotUse, "{seed}: {:?}", found.reasons);
+        assert_ne!(found.level, HandEyeLevel::DoNotUse, "{seed}: {:?}", found.reasons);
     }
     wider.sort_by(f64::total_cmp);
     println!(

@@ -9,6 +9,7 @@
 //! `result.rs` has the steps in order, `tip.rs` and `touches.rs` those of a tool's tip. The input is lists of poses; this module knows no
 //! robots and no files.
 
+mod bound_simulation;
 mod bounds;
 mod directions;
 mod draw;
@@ -17,17 +18,17 @@ mod end_tests;
 mod equations;
 mod findings;
 mod fit;
+mod flange_turns;
 mod lens;
 #[cfg(test)]
 mod lens_tests;
-mod moved;
 mod noise;
 mod other_lens;
 mod other_poses;
 mod readings;
 mod result;
 mod scale;
-mod simulated;
+mod session_motion;
 #[cfg(test)]
 mod tests;
 mod tip;
@@ -35,36 +36,38 @@ mod tip_errors;
 #[cfg(test)]
 mod tip_tests;
 mod touches;
-mod turns;
 mod types;
 mod unknown_lens;
 mod verdict;
 
-pub use bounds::Placed;
+pub use bounds::FrameEstimate;
 pub use findings::{Finding, FindingKind};
-pub use readings::{PoseList, Reading};
+pub use readings::{ListReading, PoseList};
 pub use result::hand_eye;
-pub use tip::{Tip, Tool, tool_tip};
+pub use tip::{TouchedTip, TouchedTool, tool_tip};
 pub use touches::Touches;
-pub use types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
+pub use types::{
+    Directions, FlangeTurns, HandEye, HandEyeLevel, HandEyeOptions, HandEyeOutlier, HandEyeRowError,
+    HeldOutErrors,
+};
 pub use unknown_lens::{FoundLens, UnknownLens};
 
 /// Mounting of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CameraPlace {
+pub enum CameraMounting {
     /// On the flange; the target stays.
     InHand,
     /// Beside the robot; the target is on the flange.
     Beside,
 }
 
-impl CameraPlace {
+impl CameraMounting {
     /// Word in files and on the command line.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            CameraPlace::InHand => "in-hand",
-            CameraPlace::Beside => "beside",
+            CameraMounting::InHand => "in-hand",
+            CameraMounting::Beside => "beside",
         }
     }
 
@@ -72,8 +75,8 @@ impl CameraPlace {
     #[must_use]
     pub fn on_flange(self) -> &'static str {
         match self {
-            CameraPlace::InHand => "camera",
-            CameraPlace::Beside => "target",
+            CameraMounting::InHand => "camera",
+            CameraMounting::Beside => "target",
         }
     }
 
@@ -81,8 +84,8 @@ impl CameraPlace {
     #[must_use]
     pub fn in_base(self) -> &'static str {
         match self {
-            CameraPlace::InHand => "target",
-            CameraPlace::Beside => "camera",
+            CameraMounting::InHand => "target",
+            CameraMounting::Beside => "camera",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Noise of the camera's poses by its parts, from the residuals: across and along the line of sight, of tilts and of the rotation about it.
 
-use super::equations::{Frames, NUMBERS, Normal, Pair, UNKNOWNS, derivatives, errors};
+use super::equations::{FrameEquations, FramePair, NUMBERS, PosePair, UNKNOWNS, derivatives, errors};
 use poecal_numerics::distributions::f_quantile;
 use poecal_numerics::linalg::{cholesky, inverse};
 
@@ -13,7 +13,7 @@ const DIFFERENT: f64 = 0.01;
 
 /// Standard deviations of the six numbers of a pose. Parts without a significant difference are one.
 #[derive(Clone, Debug)]
-pub(crate) struct Noise {
+pub(crate) struct PoseNoise {
     /// Part to which each number belongs.
     pub(crate) part_of: [usize; NUMBERS],
     /// Variance of each part.
@@ -27,11 +27,11 @@ pub(crate) struct Noise {
 /// Positions and orientations, each isotropic.
 const ALIKE: [usize; NUMBERS] = [0, 0, 0, 1, 1, 1];
 
-impl Noise {
+impl PoseNoise {
     /// Noise of stated standard deviations.
     pub(crate) fn from_standard_deviations(sigma_m: f64, sigma_rad: f64) -> Self {
         let variance = [sigma_m, sigma_rad].map(|it| it.max(LEAST).powi(2)).to_vec();
-        Noise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2], spent: 0.0 }
+        PoseNoise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2], spent: 0.0 }
     }
 
     /// Weights of the six numbers.
@@ -53,8 +53,8 @@ impl Noise {
     /// The same parts from the residuals of rows about their fit (forstner1979): each the mean square over its degrees of freedom, which
     /// are its numbers less its share of the unknowns. `None` if the rows do not determine the unknowns, or a part has no degrees of
     /// freedom.
-    pub(crate) fn estimated(&self, pairs: &[Pair], frames: &Frames) -> Option<Noise> {
-        let parts = Parts::from_pairs(self.part_of, self.variance.len(), pairs, frames);
+    pub(crate) fn estimate_from(&self, pairs: &[PosePair], frames: &FramePair) -> Option<PoseNoise> {
+        let parts = NoiseParts::from_pairs(self.part_of, self.variance.len(), pairs, frames);
         let mut noise = self.clone();
         for _ in 0..ROUNDS {
             let known = parts.covariance(&noise.variance)?;
@@ -79,7 +79,7 @@ impl Noise {
     }
 
     /// The same noise with parts of their own for directions along the line of sight, where they differ by more than chance.
-    pub(crate) fn apart_where_they_differ(&self, pairs: &[Pair], frames: &Frames) -> Noise {
+    pub(crate) fn apart_where_they_differ(&self, pairs: &[PosePair], frames: &FramePair) -> PoseNoise {
         let mut noise = self.clone();
         for (numbers, single) in [([0, 1, 2], 2), ([3, 4, 5], 5)] {
             let part = noise.part_of[numbers[0]];
@@ -90,7 +90,7 @@ impl Noise {
             apart.part_of[single] = apart.variance.len();
             apart.variance.push(apart.variance[part]);
             apart.freedom.push(0.0);
-            let Some(apart) = apart.estimated(pairs, frames) else { continue };
+            let Some(apart) = apart.estimate_from(pairs, frames) else { continue };
             let last = apart.variance.len() - 1;
             let (mut a, mut b) =
                 ((apart.variance[part], apart.freedom[part]), (apart.variance[last], apart.freedom[last]));
@@ -106,16 +106,16 @@ impl Noise {
 }
 
 /// Normal equations, sum of squares and number of residuals of each part.
-struct Parts {
-    normals: Vec<Normal>,
+struct NoiseParts {
+    normals: Vec<FrameEquations>,
     squares: Vec<f64>,
     counts: Vec<f64>,
 }
 
-impl Parts {
-    fn from_pairs(part_of: [usize; NUMBERS], parts: usize, pairs: &[Pair], frames: &Frames) -> Self {
-        let mut all = Parts {
-            normals: vec![Normal::zero(); parts],
+impl NoiseParts {
+    fn from_pairs(part_of: [usize; NUMBERS], parts: usize, pairs: &[PosePair], frames: &FramePair) -> Self {
+        let mut all = NoiseParts {
+            normals: vec![FrameEquations::zero(); parts],
             squares: vec![0.0; parts],
             counts: vec![0.0; parts],
         };
@@ -146,15 +146,15 @@ fn product_trace(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Covariance of the unknowns, and the part of it that each part of the noise causes, with the degrees of freedom of that part.
-pub(crate) struct Spread {
+pub(crate) struct FrameCovariance {
     pub(crate) covariance: Vec<f64>,
     pub(crate) by_part: Vec<(Vec<f64>, f64)>,
 }
 
-impl Spread {
+impl FrameCovariance {
     /// Covariance by rows about their fit.
-    pub(crate) fn from_pairs(noise: &Noise, pairs: &[Pair], frames: &Frames) -> Option<Self> {
-        let parts = Parts::from_pairs(noise.part_of, noise.variance.len(), pairs, frames);
+    pub(crate) fn from_pairs(noise: &PoseNoise, pairs: &[PosePair], frames: &FramePair) -> Option<Self> {
+        let parts = NoiseParts::from_pairs(noise.part_of, noise.variance.len(), pairs, frames);
         let mut covariance = parts.covariance(&noise.variance)?;
         let wider = follows(noise, pairs, frames);
         let by_part = parts.normals.iter().zip(&noise.variance).zip(&noise.freedom);
@@ -164,18 +164,18 @@ impl Spread {
         });
         let by_part = by_part.collect();
         covariance.iter_mut().for_each(|it| *it *= wider);
-        Some(Spread { covariance, by_part })
+        Some(FrameCovariance { covariance, by_part })
     }
 
     /// The same covariance for noise whose variance is larger by a factor.
-    pub(crate) fn larger(mut self, factor: f64) -> Self {
+    pub(crate) fn enlarge(mut self, factor: f64) -> Self {
         let parts = self.by_part.iter_mut().map(|(part, _)| part);
         parts.chain([&mut self.covariance]).flatten().for_each(|it| *it *= factor);
         self
     }
 
     /// The same covariance with a further part, which is known with these degrees of freedom.
-    pub(crate) fn with(mut self, part: Vec<f64>, freedom: f64) -> Self {
+    pub(crate) fn with_part(mut self, part: Vec<f64>, freedom: f64) -> Self {
         self.covariance.iter_mut().zip(&part).for_each(|(sum, it)| *sum += it);
         self.by_part.push((part, freedom));
         self
@@ -187,7 +187,7 @@ const ROWS_IN_ORDER: usize = 20;
 
 /// Factor by which variances grow because errors of consecutive rows are correlated, as those of an arm along its path are. It is 1 if
 /// they are not correlated by more than chance.
-fn follows(noise: &Noise, pairs: &[Pair], frames: &Frames) -> f64 {
+fn follows(noise: &PoseNoise, pairs: &[PosePair], frames: &FramePair) -> f64 {
     if pairs.len() < ROWS_IN_ORDER {
         return 1.0;
     }

@@ -19,7 +19,7 @@ pub(crate) fn other_lens(pictures: &Pictures) -> Option<String> {
     }
     let (search, start) = LensSearch::from_pictures(pictures)?;
     let before = off_px(pictures, &start)?;
-    let found = search.alone(&start)?;
+    let found = search.lens_alone(&start)?;
     let after = off_px(&found.pictures, &found)?;
     if before <= OTHER_LENS * after {
         return None;

@@ -1,6 +1,6 @@
 //! Choice among several poses that fit the corners of a picture: the one that agrees with the other pictures.
 
-use super::CameraPlace;
+use super::CameraMounting;
 use super::directions::pairs;
 use super::fit::{STARTS, medians, start};
 use super::readings::PoseList;
@@ -11,7 +11,7 @@ use poecal_arm::lie::{Pose, rotation};
 const ROUNDS: usize = 6;
 
 /// The target's poses, for each row the one that agrees with the other rows, and the rows in which that is not the first.
-pub(crate) fn settled(
+pub(crate) fn settle_poses(
     flange: &[Pose],
     target: &PoseList,
     options: &HandEyeOptions,
@@ -35,7 +35,7 @@ pub(crate) fn settled(
 fn by_rounds(
     flange: &[Pose],
     target: &PoseList,
-    camera: CameraPlace,
+    camera: CameraMounting,
     directions: &Directions,
 ) -> Option<(f64, Vec<Pose>)> {
     let mut poses = target.poses.clone();
@@ -49,7 +49,7 @@ fn by_rounds(
         }
         let mut has_changed = false;
         for (row, pair) in rows.iter().enumerate() {
-            let predicted = frames.predicted(&pair.moved);
+            let predicted = frames.predict(&pair.moved);
             let turned =
                 |pose: &&Pose| rotation::log(&(pose.rotation * predicted.rotation.transpose())).norm();
             let first = target.poses.get(row).into_iter();

@@ -1,8 +1,8 @@
 //! Lists of poses, their other possible readings, and the reading that fits if the stated one does not.
 
-use super::CameraPlace;
+use super::CameraMounting;
 use super::directions::{pairs, score};
-use super::turns::{refuse_one_axis, turns};
+use super::flange_turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEyeOptions};
 use super::unknown_lens::UnknownLens;
 use nalgebra::{Matrix3, Vector3};
@@ -15,7 +15,7 @@ pub struct PoseList {
     /// Poses as they were read.
     pub poses: Vec<Pose>,
     /// Other readings of the same numbers, to be named if they fit and this one does not.
-    pub others: Vec<Reading>,
+    pub others: Vec<ListReading>,
     /// For each row, other poses that fit the picture nearly as well, such as the second one of a flat board; empty if there are none at
     /// all.
     pub other_poses: Vec<Vec<Pose>>,
@@ -27,7 +27,7 @@ pub struct PoseList {
 
 /// Another reading of a list.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reading {
+pub struct ListReading {
     /// Finding and remedy, as the end of a sentence.
     pub advice: String,
     /// Poses by this reading.
@@ -39,7 +39,8 @@ impl PoseList {
     #[must_use]
     pub fn of_rows(&self, rows: &[usize]) -> Self {
         let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
-        let others = self.others.iter().map(|it| Reading { advice: it.advice.clone(), poses: of(&it.poses) });
+        let others =
+            self.others.iter().map(|it| ListReading { advice: it.advice.clone(), poses: of(&it.poses) });
         let other_poses = match self.other_poses.is_empty() {
             true => Vec::new(),
             false => rows.iter().filter_map(|&row| self.other_poses.get(row)).cloned().collect(),
@@ -104,7 +105,7 @@ fn refuse_lengths(list: &str, poses: &[Pose], nearest: f64) -> Result<()> {
 }
 
 /// Error that names another reading which fits evidently better than the stated one, in any direction; `None` if there is no such reading.
-pub(crate) fn mistaken(
+pub(crate) fn misreading_error(
     flange: &PoseList,
     target: &PoseList,
     options: &HandEyeOptions,
@@ -134,7 +135,7 @@ pub(crate) fn mistaken(
         consider(&flange.poses, &reading.poses, &reading.advice);
     }
     for (list, poses) in [("arm", &flange.poses), ("target", &target.poses)] {
-        for (poses, what) in mirrored(poses) {
+        for (poses, what) in mirror_poses(poses) {
             let advice = format!(
                 "{what} of the {list}: its frame is left-handed, or a sign is wrong; export it in a right-handed frame"
             );
@@ -184,7 +185,7 @@ pub(crate) fn least_score(
             target_inverted: options.target_inverted.unwrap_or(false),
             stated: false,
         };
-        score(&pairs(flange, target, CameraPlace::Beside, &directions))
+        score(&pairs(flange, target, CameraMounting::Beside, &directions))
             .map(|(score, _, errors)| (score, errors))
     };
     [of(false), of(true)].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
@@ -225,7 +226,7 @@ fn orders(count: usize) -> Vec<(Vec<usize>, Vec<usize>, String)> {
 }
 
 /// Poses with one axis mirrored: all of a frame, or positions alone.
-fn mirrored(poses: &[Pose]) -> Vec<(Vec<Pose>, &'static str)> {
+fn mirror_poses(poses: &[Pose]) -> Vec<(Vec<Pose>, &'static str)> {
     let mirror = |axis: usize| {
         let mut signs = Vector3::repeat(1.0);
         signs[axis] = -1.0;

@@ -2,18 +2,21 @@
 
 use nalgebra::Vector3;
 
-use super::bounds::{Placed, Side, bounded};
-use super::directions::{found, pairs};
-use super::equations::{Pair, errors, sight_axes};
-use super::findings::{Finding, FindingKind, listed};
-use super::fit::{Fit, sizes};
-use super::lens::{self, Fitted, Joint, WithLens};
-use super::noise::Spread;
-use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_other_lengths};
-use super::turns::{refuse_one_axis, turns};
-use super::types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
+use super::bounds::{FrameEstimate, FrameSide, bound_frame};
+use super::directions::{find_directions, pairs};
+use super::equations::{PosePair, errors, sight_axes};
+use super::findings::{Finding, FindingKind, list_rows};
+use super::fit::{HandEyeFit, sizes};
+use super::flange_turns::{refuse_one_axis, turns};
+use super::lens::{self, FitWithLens, LensCoupling, LensFit};
+use super::noise::FrameCovariance;
+use super::readings::{PoseList, least_score, misread_angles, misreading_error, refuse_other_lengths};
+use super::types::{
+    Directions, FlangeTurns, HandEye, HandEyeLevel, HandEyeOptions, HandEyeOutlier, HandEyeRowError,
+    HeldOutErrors,
+};
 use super::unknown_lens::FoundLens;
-use super::{CameraPlace, moved, other_poses, scale, simulated, verdict};
+use super::{CameraMounting, bound_simulation, other_poses, scale, session_motion, verdict};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -29,14 +32,14 @@ const SAME: f64 = 1e-9;
 /// units, conventions, order or directions.
 ///
 /// ```
-/// use poecal_fit::hand_eye::{CameraPlace, HandEyeOptions, hand_eye};
+/// use poecal_fit::hand_eye::{CameraMounting, HandEyeOptions, hand_eye};
 /// use poecal_arm::lie::Pose;
 /// let (camera, board) = (Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.1, 0.0, 1.5]), Pose::from_xyz_rpy([0.6, 0.1, 0.0], [3.1, 0.0, 0.2]));
 /// let flange: Vec<Pose> = (0..10).map(|k| f64::from(k)).map(|k| {
 ///     Pose::from_xyz_rpy([0.5 + 0.02 * k, 0.1 * k.sin(), 0.6], [3.0 + 0.3 * (1.3 * k).sin(), 0.3 * (2.1 * k).cos(), 0.4 * k.sin()])
 /// }).collect();
 /// let seen: Vec<Pose> = flange.iter().map(|it| (*it * camera).inverse() * board).collect();
-/// let found = hand_eye(&flange.into(), &seen.into(), &HandEyeOptions::new(CameraPlace::InHand), &|row| format!("row {}", row + 1))?;
+/// let found = hand_eye(&flange.into(), &seen.into(), &HandEyeOptions::new(CameraMounting::InHand), &|row| format!("row {}", row + 1))?;
 /// assert!((found.on_flange.pose.translation - camera.translation).norm() < 1e-9);
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
@@ -69,30 +72,32 @@ pub fn hand_eye(
     }
     let part = |poses: &[Pose], rows: &[usize]| -> Vec<Pose> { rows.iter().map(|&row| poses[row]).collect() };
     let [arm, seen] = [&flange.poses, &target.poses].map(|poses| part(poses, &counted));
-    let (directions, said) = found(&arm, &seen, options)?;
+    let (directions, said) = find_directions(&arm, &seen, options)?;
     findings.extend(said);
     let all = pairs(&flange.poses, &target.poses, options.camera, &directions);
-    let of = |rows: &[usize]| -> Vec<Pair> { rows.iter().map(|&row| all[row]).collect() };
-    if let Some(step) = moved::found(&of(&counted)) {
+    let of = |rows: &[usize]| -> Vec<PosePair> { rows.iter().map(|&row| all[row]).collect() };
+    if let Some(step) = session_motion::find_move(&of(&counted)) {
         let (longer, finding) = leave_moved_out(&step, &counted, options.camera, name);
         findings.push(finding);
         counted = longer;
     }
-    let fitted = |poses: &[Pose], before: Option<&Fit>| {
+    let fitted = |poses: &[Pose], before: Option<&HandEyeFit>| {
         let all = pairs(&flange.poses, poses, options.camera, &directions);
         fitted_again(&all, &counted, before)
     };
     let with_lens = match &target.lens {
-        Some(lens) => lens::together(lens, &target.poses, &fitted),
-        None => fitted(&target.poses, None).map(|(fit, _)| WithLens::known(target.poses.clone(), fit)),
+        Some(lens) => lens::refit_with_lens(lens, &target.poses, &fitted),
+        None => fitted(&target.poses, None)
+            .map(|(fit, _)| FitWithLens::from_known_lens(target.poses.clone(), fit)),
     };
-    let Some(WithLens { target: poses, fit, joint }) = with_lens else {
+    let Some(FitWithLens { target: poses, fit, joint }) = with_lens else {
         return ErrorKind::Problem.refuse(
             "found poses that do not determine where the camera is, expected turns about two axes or more: add poses that turn about a second axis",
         );
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
-    let found = finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
+    let found =
+        assemble_result(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
     Ok(found.with_lens_doubt(target.lens_doubt.as_ref()))
 }
 
@@ -103,11 +108,11 @@ fn with_settled_poses(
     (options, name): (&HandEyeOptions, &dyn Fn(usize) -> String),
     findings: &mut Vec<Finding>,
 ) -> PoseList {
-    let (poses, rows) = other_poses::settled(&flange.poses, target, options);
+    let (poses, rows) = other_poses::settle_poses(&flange.poses, target, options);
     if !rows.is_empty() {
         let statement = format!(
             "took another pose of the board by the same corners in {}: so the pictures agree",
-            listed(&rows, name)
+            list_rows(&rows, name)
         );
         findings.push(Finding::new(FindingKind::OtherPose, statement, rows));
     }
@@ -115,11 +120,11 @@ fn with_settled_poses(
 }
 
 /// Fit of some rows, from an earlier one if there is one, with the rows that count (as measured about its point).
-fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option<Fitted> {
-    let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+fn fitted_again(all: &[PosePair], counted: &[usize], before: Option<&HandEyeFit>) -> Option<LensFit> {
+    let rows: Vec<PosePair> = counted.iter().map(|&row| all[row]).collect();
     let fit = match before {
-        Some(before) => Fit::from_start(&rows, before.own_frames()),
-        None => Fit::from_pairs(&rows),
+        Some(before) => HandEyeFit::from_start(&rows, before.own_frames()),
+        None => HandEyeFit::from_pairs(&rows),
     }?;
     let about = fit.seen_about(&rows);
     let kept = counted.iter().copied().zip(about).zip(&fit.kept);
@@ -129,9 +134,9 @@ fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option
 
 /// Leaves out the poses before or after a move, and returns those that stay.
 fn leave_moved_out(
-    step: &moved::Move,
+    step: &session_motion::RelativeMotion,
     counted: &[usize],
-    camera: CameraPlace,
+    camera: CameraMounting,
     name: &dyn Fn(usize) -> String,
 ) -> (Vec<usize>, Finding) {
     let row = counted[step.from];
@@ -139,7 +144,7 @@ fn leave_moved_out(
     let (longer, left_out) = if before.len() >= after.len() { (before, after) } else { (after, before) };
     let statement = format!(
         "{} moved by {:.2} mm and {:.2} deg before {}: the {} poses {} it were left out; fix it, and measure again",
-        moved::words(step.side, camera),
+        session_motion::words(step.side, camera),
         1e3 * step.shift_m,
         step.turn_rad.to_degrees(),
         name(row),
@@ -150,32 +155,32 @@ fn leave_moved_out(
 }
 
 /// Result of a fit, with its findings and verdict.
-fn finished(
-    all: &[Pair],
+fn assemble_result(
+    all: &[PosePair],
     counted: &[usize],
-    (fit, joint, directions, turns): (&Fit, Option<Joint>, Directions, Turns),
-    camera: CameraPlace,
+    (fit, joint, directions, turns): (&HandEyeFit, Option<LensCoupling>, Directions, FlangeTurns),
+    camera: CameraMounting,
     mut findings: Vec<Finding>,
     name: &dyn Fn(usize) -> String,
 ) -> Result<HandEye> {
-    let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
+    let rows: Vec<PosePair> = counted.iter().map(|&row| all[row]).collect();
     let kept = fit.rows(&fit.seen_about(&rows));
-    let Some(spread) = Spread::from_pairs(&fit.noise, &kept, &fit.frames) else {
+    let Some(spread) = FrameCovariance::from_pairs(&fit.noise, &kept, &fit.frames) else {
         return ErrorKind::Problem.refuse(
             "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
         );
     };
     let ([of_camera, of_target], lens) = with_bounds(spread, &rows, fit, joint);
     let (on_flange, in_base) = match camera {
-        CameraPlace::InHand => (of_camera, of_target),
-        CameraPlace::Beside => (of_target, of_camera),
+        CameraMounting::InHand => (of_camera, of_target),
+        CameraMounting::Beside => (of_target, of_camera),
     };
     let is_kept = |row: usize| counted.iter().position(|it| *it == row).is_some_and(|at| fit.kept[at]);
     let frames = fit.own_frames();
-    let rows_errors: Vec<RowError> = (all.iter().enumerate())
+    let rows_errors: Vec<HandEyeRowError> = (all.iter().enumerate())
         .map(|(row, pair)| {
             let (shift_m, turn_rad) = sizes(&errors(pair, &frames));
-            RowError { shift_m, turn_rad, is_fitted: is_kept(row) }
+            HandEyeRowError { shift_m, turn_rad, is_fitted: is_kept(row) }
         })
         .collect();
     let outliers = find_outliers((all, counted), &rows_errors, fit);
@@ -192,7 +197,7 @@ fn finished(
         on_flange,
         in_base,
         directions,
-        level: Level::Good,
+        level: HandEyeLevel::Good,
         reasons: Vec::new(),
         noise,
         noise_about: fit.point,
@@ -210,32 +215,42 @@ fn finished(
 
 /// Camera and target with their bounds, which contain the uncertainty of an unknown lens.
 fn with_bounds(
-    spread: Spread,
-    rows: &[Pair],
-    fit: &Fit,
-    joint: Option<Joint>,
-) -> ([Placed; 2], Option<FoundLens>) {
-    let factors = simulated::factors(&fit.rows(rows), fit);
-    let by = |spread: &Spread, side: Side| {
+    spread: FrameCovariance,
+    rows: &[PosePair],
+    fit: &HandEyeFit,
+    joint: Option<LensCoupling>,
+) -> ([FrameEstimate; 2], Option<FoundLens>) {
+    let factors = bound_simulation::factors(&fit.rows(rows), fit);
+    let by = |spread: &FrameCovariance, side: FrameSide| {
         let (by_m, by_rad) = factors.factors_of_side(side);
-        let placed = bounded(spread, &fit.frames, &fit.point, side);
-        Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
+        let placed = bound_frame(spread, &fit.frames, &fit.point, side);
+        FrameEstimate {
+            bound95_m: by_m * placed.bound95_m,
+            bound95_rad: by_rad * placed.bound95_rad,
+            ..placed
+        }
     };
-    let both = |spread: &Spread| [Side::Camera, Side::Target].map(|side| by(spread, side));
-    let Some(Joint { found, covariance, freedom, larger }) = joint else { return (both(&spread), None) };
-    let spread = spread.larger(larger);
-    let known_bound95_m = by(&spread, Side::Camera).bound95_m;
-    (both(&spread.with(covariance, freedom)), Some(FoundLens { known_bound95_m, ..found }))
+    let both = |spread: &FrameCovariance| [FrameSide::Camera, FrameSide::Target].map(|side| by(spread, side));
+    let Some(LensCoupling { found, covariance, freedom, larger }) = joint else {
+        return (both(&spread), None);
+    };
+    let spread = spread.enlarge(larger);
+    let known_bound95_m = by(&spread, FrameSide::Camera).bound95_m;
+    (both(&spread.with_part(covariance, freedom)), Some(FoundLens { known_bound95_m, ..found }))
 }
 
 /// Rows that were left out of a fit of some.
-fn find_outliers((all, counted): (&[Pair], &[usize]), errors: &[RowError], fit: &Fit) -> Vec<Outlier> {
+fn find_outliers(
+    (all, counted): (&[PosePair], &[usize]),
+    errors: &[HandEyeRowError],
+    fit: &HandEyeFit,
+) -> Vec<HandEyeOutlier> {
     counted
         .iter()
         .filter(|row| !errors[**row].is_fitted)
         .map(|&row| {
-            let RowError { shift_m, turn_rad, .. } = errors[row];
-            Outlier { row, shift_m, turn_rad, is_flipped: is_flipped(&all[row], fit) }
+            let HandEyeRowError { shift_m, turn_rad, .. } = errors[row];
+            HandEyeOutlier { row, shift_m, turn_rad, is_flipped: is_flipped(&all[row], fit) }
         })
         .collect()
 }
@@ -248,7 +263,7 @@ fn once_each(
     findings: &mut Vec<Finding>,
 ) -> Vec<usize> {
     let same = |one: &Pose, other: &Pose| {
-        let (shift, turn) = one.apart(other);
+        let (shift, turn) = one.distance_and_angle(other);
         shift < SAME && turn < 1e-7
     };
     let mut counted: Vec<usize> = Vec::new();
@@ -286,7 +301,7 @@ fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
     for &row in counted {
         let pose = &flange.poses[row];
         let is_new = different.iter().all(|it| {
-            let (shift, turn) = it.apart(pose);
+            let (shift, turn) = it.distance_and_angle(pose);
             shift > 1e-5 || turn > 1e-4
         });
         if is_new {
@@ -314,12 +329,14 @@ fn mistake(
     options: &HandEyeOptions,
 ) -> Option<poecal_numerics::error::Error> {
     let (score, (shift, turn)) = least_score(&flange.poses, &target.poses, options)?;
-    (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1).then(|| mistaken(flange, target, options, score)).flatten()
+    (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1)
+        .then(|| misreading_error(flange, target, options, score))
+        .flatten()
 }
 
 /// True if a row is right once its board is turned to the other of the two poses that look alike from afar.
-fn is_flipped(pair: &Pair, fit: &Fit) -> bool {
-    let predicted = fit.own_frames().predicted(&pair.moved);
+fn is_flipped(pair: &PosePair, fit: &HandEyeFit) -> bool {
+    let predicted = fit.own_frames().predict(&pair.moved);
     let normal = pair.seen.rotation.column(2).into_owned();
     let along: Vector3<f64> = sight_axes(&pair.seen).row(2).transpose();
     let other = 2.0 * normal.dot(&along) * along - normal;
@@ -329,7 +346,7 @@ fn is_flipped(pair: &Pair, fit: &Fit) -> bool {
     as_read > 0.1 && as_other < 0.35 * as_read
 }
 
-fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: &mut Vec<Finding>) {
+fn say_outliers(outliers: &[HandEyeOutlier], name: &dyn Fn(usize) -> String, findings: &mut Vec<Finding>) {
     let rows = |flipped: bool| -> Vec<usize> {
         outliers.iter().filter(|it| it.is_flipped == flipped).map(|it| it.row).collect()
     };
@@ -339,7 +356,7 @@ fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: 
         let statement = format!(
             "{} {} flipped: a flat board seen from its other side would look the same; left out; take the other solution (OpenCV: solvePnPGeneric with \
              SOLVEPNP_IPPE), or tilt the board further",
-            listed(&flipped, name),
+            list_rows(&flipped, name),
             verb(flipped.len())
         );
         findings.push(Finding::new(FindingKind::Flipped, statement, flipped));
@@ -352,7 +369,7 @@ fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: 
         });
         let statement = format!(
             "{} contradict{} all others{size} and {} left out: look at these pictures and poses",
-            listed(&others, name),
+            list_rows(&others, name),
             if others.len() == 1 { "s" } else { "" },
             verb(others.len())
         );
@@ -361,7 +378,7 @@ fn say_outliers(outliers: &[Outlier], name: &dyn Fn(usize) -> String, findings: 
 }
 
 /// Errors of rows in five parts, each predicted by the others.
-fn held_out(rows: &[Pair], fit: &Fit) -> Option<HeldOut> {
+fn held_out(rows: &[PosePair], fit: &HandEyeFit) -> Option<HeldOutErrors> {
     let kept = fit.rows(rows);
     if kept.len() < 6 {
         return None;
@@ -369,10 +386,10 @@ fn held_out(rows: &[Pair], fit: &Fit) -> Option<HeldOut> {
     let folds = if kept.len() < 10 { kept.len() } else { 5 };
     let (mut squares_m, mut squares_rad) = (0.0, 0.0);
     for fold in 0..folds {
-        let of = |held: bool| -> Vec<Pair> {
+        let of = |held: bool| -> Vec<PosePair> {
             kept.iter().enumerate().filter(|(k, _)| (k % folds == fold) == held).map(|(_, it)| *it).collect()
         };
-        let frames = fit.of_target(&fit.again(&of(false))?);
+        let frames = fit.of_target(&fit.refit(&of(false))?);
         for pair in of(true) {
             let (shift, turn) = sizes(&errors(&pair, &frames));
             squares_m += shift * shift;
@@ -380,16 +397,16 @@ fn held_out(rows: &[Pair], fit: &Fit) -> Option<HeldOut> {
         }
     }
     let count = kept.len() as f64;
-    Some(HeldOut {
+    Some(HeldOutErrors {
         rows: kept.len(),
         rms_m: (squares_m / count).sqrt(),
         rms_rad: (squares_rad / count).sqrt(),
     })
 }
 
-fn root_mean_squares(rows: &[RowError]) -> (f64, f64) {
-    let fitted: Vec<&RowError> = rows.iter().filter(|it| it.is_fitted).collect();
-    let of = |size: &dyn Fn(&RowError) -> f64| {
+fn root_mean_squares(rows: &[HandEyeRowError]) -> (f64, f64) {
+    let fitted: Vec<&HandEyeRowError> = rows.iter().filter(|it| it.is_fitted).collect();
+    let of = |size: &dyn Fn(&HandEyeRowError) -> f64| {
         (fitted.iter().map(|it| size(it).powi(2)).sum::<f64>() / fitted.len().max(1) as f64).sqrt()
     };
     (of(&|it| it.shift_m), of(&|it| it.turn_rad))

@@ -1,7 +1,7 @@
 //! Lengths of the camera compared with those of the arm: a board whose size is stated wrongly, or another focal length.
 
-use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
-use super::fit::{Fit, variance_along};
+use super::equations::{NUMBERS, PosePair, UNKNOWNS, derivatives, errors, normal, sight_axes};
+use super::fit::{HandEyeFit, variance_along};
 use poecal_arm::lie::Pose;
 use poecal_numerics::distributions::f_quantile;
 
@@ -20,7 +20,7 @@ const FOUND: f64 = 1e-3;
 const EXPLAINS: f64 = 0.2;
 
 /// Relative excess of the camera's lengths, with its information; `None` if it is not determined.
-fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
+fn share(rows: &[PosePair], fit: &HandEyeFit) -> Option<(f64, f64)> {
     let weights = fit.noise.weights();
     let known = normal(rows.iter().map(|it| (it, weights)), &fit.frames).covariance()?;
     let (mut size, mut along, mut mixed) = (0.0, 0.0, [0.0; UNKNOWNS]);
@@ -41,12 +41,16 @@ fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
 
 /// Ratio of the camera's lengths to the arm's, if it is significant: from all rows, from those that count, and from whether they fit
 /// together.
-pub(crate) fn length_scale((rows, kept): (&[Pair], &[Pair]), fit: &Fit, fits: bool) -> Option<f64> {
-    if fits { found(kept, fit) } else { explaining(rows, fit) }
+pub(crate) fn length_scale(
+    (rows, kept): (&[PosePair], &[PosePair]),
+    fit: &HandEyeFit,
+    fits: bool,
+) -> Option<f64> {
+    if fits { find_scale(kept, fit) } else { explain_scale(rows, fit) }
 }
 
 /// The ratio if it differs from 1 by more than chance, from the rows that count.
-fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
+fn find_scale(kept: &[PosePair], fit: &HandEyeFit) -> Option<f64> {
     let (share, information) = share(kept, fit)?;
     let freedom = fit.noise.freedom.first().copied().unwrap_or(1.0).clamp(1.0, 1e6);
     let is_evident = share * share * information > f_quantile(CHANCE, 1.0, freedom);
@@ -54,14 +58,14 @@ fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
 }
 
 /// The ratio of poses that do not fit together, if it is the cause: lengths that are many times too long or too short.
-fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
+fn explain_scale(rows: &[PosePair], fit: &HandEyeFit) -> Option<f64> {
     let mut times = 1.0;
     for _ in 0..ROUNDS {
-        let scaled = shortened(rows, times);
-        let now = Fit::from_pairs(&scaled)?;
+        let scaled = shorten_rows(rows, times);
+        let now = HandEyeFit::from_pairs(&scaled)?;
         let (share, _) = share(&now.seen_about(&scaled), &now)?;
         if share.abs() < FOUND {
-            let places = |fit: &Fit| fit.noise.sigma(0).max(fit.noise.sigma(2));
+            let places = |fit: &HandEyeFit| fit.noise.sigma(0).max(fit.noise.sigma(2));
             let turns = now.noise.sigma(3).max(now.noise.sigma(5));
             let is_explained = times * places(&now) < EXPLAINS * places(fit) && turns < NO_CAMERA;
             return is_explained.then_some(times);
@@ -75,10 +79,10 @@ fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
 }
 
 /// Rows whose positions are divided by a factor.
-fn shortened(rows: &[Pair], times: f64) -> Vec<Pair> {
-    let of = |pair: &Pair| {
+fn shorten_rows(rows: &[PosePair], times: f64) -> Vec<PosePair> {
+    let of = |pair: &PosePair| {
         let seen = Pose::new(pair.seen.rotation, pair.seen.translation / times);
-        Pair { seen, ..*pair }
+        PosePair { seen, ..*pair }
     };
     rows.iter().map(of).collect()
 }

@@ -2,29 +2,29 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use super::bounds::{Placed, length_within};
-use super::findings::{Finding, FindingKind, listed};
+use super::bounds::{FrameEstimate, length_within};
+use super::findings::{Finding, FindingKind, list_rows};
 use super::readings::refuse_arm_lengths;
 use super::tip_errors;
-use super::touches::{FEWEST, Layout, TipFit, Touches};
-use super::types::{Level, RowError};
+use super::touches::{FEWEST, TouchFit, TouchLayout, Touches};
+use super::types::{HandEyeLevel, HandEyeRowError};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// A tip of the tool.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tip {
+pub struct TouchedTip {
     /// Name; empty if no column names it.
     pub name: String,
     /// Position in the flange's frame, with its bounds; not turned.
-    pub placed: Placed,
+    pub placed: FrameEstimate,
 }
 
 /// The tool as determined by its touches.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tool {
+pub struct TouchedTool {
     /// Tips, in the order of the rows.
-    pub tips: Vec<Tip>,
+    pub tips: Vec<TouchedTip>,
     /// With two tips or more: the direction from the second to the first, in the flange's frame, and the angle within which it is with 95 %
     /// probability, radians.
     pub axis: Option<(Vector3<f64>, f64)>,
@@ -35,11 +35,11 @@ pub struct Tool {
     /// Standard deviation of each component of a touch, metres.
     pub sigma_m: f64,
     /// Rows with their errors.
-    pub rows: Vec<RowError>,
+    pub rows: Vec<HandEyeRowError>,
     /// Touches that contradict the others.
     pub outliers: Vec<usize>,
     /// Usability of the result.
-    pub level: Level,
+    pub level: HandEyeLevel,
     /// Reasons of the level, a sentence each.
     pub reasons: Vec<String>,
     /// Findings.
@@ -77,7 +77,7 @@ const SUSPICIOUS: f64 = 5e-3;
 /// assert!((found.tips[0].placed.pose.translation - tip).norm() < 1e-9);
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
-pub fn tool_tip(touches: &Touches, name: &dyn Fn(usize) -> String) -> Result<Tool> {
+pub fn tool_tip(touches: &Touches, name: &dyn Fn(usize) -> String) -> Result<TouchedTool> {
     let count = touches.flange.poses.len();
     if count < FEWEST {
         return ErrorKind::Problem.refuse(format!(
@@ -85,26 +85,26 @@ pub fn tool_tip(touches: &Touches, name: &dyn Fn(usize) -> String) -> Result<Too
         ));
     }
     refuse_arm_lengths(&touches.flange.poses)?;
-    let layout = Layout::from_touches(touches);
+    let layout = TouchLayout::from_touches(touches);
     layout.refuse_few(touches)?;
     let poses = &touches.flange.poses;
     let (weak, spread) = layout.least_tilted(poses, &vec![true; poses.len()]);
     let solved = layout.robustly(poses).filter(|_| spread > UNTILTED);
-    let Some(fit) = solved else { return Err(untilted(&weak, spread)) };
+    let Some(fit) = solved else { return Err(untilted_error(&weak, spread)) };
     if fit.rms(poses, &layout) > SUSPICIOUS
         && let Some(error) = other_reading(touches, &layout, &fit)
     {
         return Err(error);
     }
     let Some(covariance) = tip_errors::covariance(poses, &layout, &fit, &weak) else {
-        return Err(untilted(&weak, spread));
+        return Err(untilted_error(&weak, spread));
     };
-    let mut tool = finished(poses, &layout, &fit, &covariance);
-    judge(&mut tool, (weak, spread), turned(poses), name);
+    let mut tool = assemble_tool(poses, &layout, &fit, &covariance);
+    judge(&mut tool, (weak, spread), largest_turn(poses), name);
     Ok(tool)
 }
 
-fn untilted(weak: &Vector3<f64>, spread: f64) -> Error {
+fn untilted_error(weak: &Vector3<f64>, spread: f64) -> Error {
     ErrorKind::Problem.error(format!(
         "found orientations that tilt the direction ({:.2} {:.2} {:.2} of the flange) by {:.1} deg only, expected 20 deg and more: the tip along it is not \
          determined; touch the point with the flange tilted about two axes across it",
@@ -116,7 +116,7 @@ fn untilted(weak: &Vector3<f64>, spread: f64) -> Error {
 }
 
 /// Another reading of the poses that fits evidently better, with as many touches, which determine as much of the tip.
-fn other_reading(touches: &Touches, layout: &Layout, found: &TipFit) -> Option<Error> {
+fn other_reading(touches: &Touches, layout: &TouchLayout, found: &TouchFit) -> Option<Error> {
     let inverted: Vec<Pose> = touches.flange.poses.iter().map(Pose::inverse).collect();
     let inverted = (
         "poses inverted (flange from base): export base from flange, the pose of the flange in the base",
@@ -142,31 +142,36 @@ fn other_reading(touches: &Touches, layout: &Layout, found: &TipFit) -> Option<E
 }
 
 /// Largest angle between two orientations, radians.
-fn turned(poses: &[Pose]) -> f64 {
+fn largest_turn(poses: &[Pose]) -> f64 {
     let first = poses.first().map_or_else(Matrix3::identity, |it| it.rotation);
     poses.iter().map(|it| rotation::log(&(first.transpose() * it.rotation)).norm()).fold(0.0, f64::max)
 }
 
 /// Tool of a fit, not judged yet.
-fn finished(poses: &[Pose], layout: &Layout, fit: &TipFit, covariance: &DMatrix<f64>) -> Tool {
+fn assemble_tool(
+    poses: &[Pose],
+    layout: &TouchLayout,
+    fit: &TouchFit,
+    covariance: &DMatrix<f64>,
+) -> TouchedTool {
     let at = |tip: usize| {
         Vector3::new(fit.unknowns[3 * tip], fit.unknowns[3 * tip + 1], fit.unknowns[3 * tip + 2])
     };
     let block = |i: usize, j: usize| covariance.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
     let bound = |covariance: &Matrix3<f64>| length_within(covariance, &[(covariance.trace(), fit.freedom)]);
-    let tips: Vec<Tip> = layout
+    let tips: Vec<TouchedTip> = layout
         .tips
         .iter()
         .enumerate()
         .map(|(k, name)| {
             let covariance = block(k, k);
-            let placed = Placed {
+            let placed = FrameEstimate {
                 pose: Pose::from_translation(at(k)),
                 bound95_m: bound(&covariance),
                 sigma_m: covariance.diagonal().map(|it| it.max(0.0).sqrt()),
-                ..Placed::default()
+                ..FrameEstimate::default()
             };
-            Tip { name: name.clone(), placed }
+            TouchedTip { name: name.clone(), placed }
         })
         .collect();
     let axis = (tips.len() > 1).then(|| {
@@ -179,13 +184,13 @@ fn finished(poses: &[Pose], layout: &Layout, fit: &TipFit, covariance: &DMatrix<
     let turn = axis
         .map_or_else(Matrix3::identity, |(direction, _)| rotation::shortest_arc(&Vector3::z(), &direction));
     let misses = layout.misses(poses, &fit.unknowns);
-    let rows: Vec<RowError> = misses
+    let rows: Vec<HandEyeRowError> = misses
         .iter()
         .zip(&fit.kept)
-        .map(|(miss, kept)| RowError { shift_m: miss.norm(), turn_rad: 0.0, is_fitted: *kept })
+        .map(|(miss, kept)| HandEyeRowError { shift_m: miss.norm(), turn_rad: 0.0, is_fitted: *kept })
         .collect();
     let outliers: Vec<usize> = (0..rows.len()).filter(|&row| !rows[row].is_fitted).collect();
-    Tool {
+    TouchedTool {
         frame: Pose::new(turn, at(0)),
         tips,
         axis,
@@ -193,21 +198,21 @@ fn finished(poses: &[Pose], layout: &Layout, fit: &TipFit, covariance: &DMatrix<
         sigma_m: fit.sigma_m,
         rows,
         outliers,
-        level: Level::Good,
+        level: HandEyeLevel::Good,
         reasons: Vec::new(),
         findings: Vec::new(),
     }
 }
 
-impl Tip {
+impl TouchedTip {
     /// True if there is no tool: the poses are those of the tip itself.
     fn is_at_flange(&self) -> bool {
         self.placed.pose.translation.norm() < self.placed.bound95_m.clamp(AT_FLANGE, USELESS)
     }
 
     /// Reason why the tip is too uncertain to be used, if it is.
-    fn useless(&self) -> Option<String> {
-        let Placed { bound95_m: bound, pose, .. } = self.placed;
+    fn describe_uselessness(&self) -> Option<String> {
+        let FrameEstimate { bound95_m: bound, pose, .. } = self.placed;
         let length = pose.translation.norm();
         (bound > USELESS.min(length)).then(|| {
             let name = if self.name.is_empty() { String::new() } else { format!(" `{}`", self.name) };
@@ -222,7 +227,12 @@ impl Tip {
 }
 
 /// Sets level and reasons. The arguments are the direction that tilted least, its tilt, and the largest rotation.
-fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name: &dyn Fn(usize) -> String) {
+fn judge(
+    tool: &mut TouchedTool,
+    (weak, spread): (Vector3<f64>, f64),
+    turned: f64,
+    name: &dyn Fn(usize) -> String,
+) {
     let (fitted, outliers) = (tool.rows.len() - tool.outliers.len(), tool.outliers.len());
     let (mut against, mut reasons) = (Vec::new(), Vec::new());
     if tool.rms_m > USELESS {
@@ -231,7 +241,7 @@ fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name
              tool is zero (flange) in what was recorded",
             1e3 * tool.rms_m
         ));
-    } else if tool.tips.iter().any(Tip::is_at_flange) {
+    } else if tool.tips.iter().any(TouchedTip::is_at_flange) {
         against.push(format!(
             "the positions are one point within {:.1} mm (RMS) while the orientations turn by {:.0} deg: these are poses of the tip, whose tool was active \
              in the controller, and not of the flange; record again with the tool zero (flange), or keep the controller's tool, which these touches \
@@ -240,7 +250,7 @@ fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name
             turned.to_degrees()
         ));
     } else {
-        against.extend(tool.tips.iter().filter_map(Tip::useless));
+        against.extend(tool.tips.iter().filter_map(TouchedTip::describe_uselessness));
     }
     if 2 * outliers >= fitted {
         against.push(format!("{outliers} of {} touches contradict the others", fitted + outliers));
@@ -248,7 +258,7 @@ fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name
     if outliers > 0 {
         let statement = format!(
             "{} contradict{} the others and {} left out: touch the point anew there",
-            listed(&tool.outliers, name),
+            list_rows(&tool.outliers, name),
             if outliers == 1 { "s" } else { "" },
             if outliers == 1 { "is" } else { "are" }
         );
@@ -277,5 +287,5 @@ fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name
         reasons.push(statement.clone());
         tool.findings.push(Finding::new(FindingKind::MissingMoves, statement, Vec::new()));
     }
-    (tool.level, tool.reasons) = Level::from_reasons(against, reasons);
+    (tool.level, tool.reasons) = HandEyeLevel::from_reasons(against, reasons);
 }

@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use super::touches::{Layout, TipFit};
+use super::touches::{TouchFit, TouchLayout};
 use poecal_arm::lie::Pose;
 use poecal_numerics::linalg;
 
@@ -23,7 +23,7 @@ const MOST: usize = 300;
 
 /// Correlation of the tip's errors.
 #[derive(Clone, Copy)]
-enum Alike {
+enum TipErrorPattern {
     /// Independent touches.
     Never,
     /// By the angle between two orientations.
@@ -36,17 +36,18 @@ enum Alike {
 /// determine them.
 pub(crate) fn covariance(
     poses: &[Pose],
-    layout: &Layout,
-    fit: &TipFit,
+    layout: &TouchLayout,
+    fit: &TouchFit,
     about: &Vector3<f64>,
 ) -> Option<DMatrix<f64>> {
     let kept: Vec<usize> = (0..poses.len()).filter(|&row| fit.kept[row]).collect();
     let kept: Vec<usize> = kept.iter().copied().step_by(kept.len().div_ceil(MOST).max(1)).collect();
-    let mut kinds = vec![Alike::Never];
-    kinds.extend(SHARES.map(Alike::Turned));
-    kinds.extend(SHARES.map(Alike::Tilted));
-    let touches = Touched { poses, layout, kept: &kept };
-    let found: Option<Vec<Fitted>> = kinds.iter().map(|kind| touches.fitted(*kind, about)).collect();
+    let mut kinds = vec![TipErrorPattern::Never];
+    kinds.extend(SHARES.map(TipErrorPattern::Turned));
+    kinds.extend(SHARES.map(TipErrorPattern::Tilted));
+    let touches = CountedTouches { poses, layout, kept: &kept };
+    let found: Option<Vec<TipErrorFit>> =
+        kinds.iter().map(|kind| touches.fit_correlated(*kind, about)).collect();
     let found = found?;
     let most = found.iter().map(|it| it.likelihood).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = found.iter().map(|it| (it.likelihood - most).exp()).collect();
@@ -62,25 +63,25 @@ pub(crate) fn covariance(
 }
 
 /// Touches that count.
-struct Touched<'a> {
+struct CountedTouches<'a> {
     poses: &'a [Pose],
-    layout: &'a Layout,
+    layout: &'a TouchLayout,
     kept: &'a [usize],
 }
 
 /// A fit with errors of one kind.
-struct Fitted {
+struct TipErrorFit {
     unknowns: DVector<f64>,
     covariance: DMatrix<f64>,
     /// Logarithm of the restricted likelihood, but for a constant.
     likelihood: f64,
 }
 
-impl Touched<'_> {
+impl CountedTouches<'_> {
     /// Generalised least squares of the touches with correlated errors.
-    fn fitted(&self, kind: Alike, about: &Vector3<f64>) -> Option<Fitted> {
+    fn fit_correlated(&self, kind: TipErrorPattern, about: &Vector3<f64>) -> Option<TipErrorFit> {
         let (m, n) = (self.kept.len(), self.layout.unknowns());
-        let alike = DMatrix::from_fn(m, m, |i, j| self.alike(kind, (i, j), about));
+        let alike = DMatrix::from_fn(m, m, |i, j| self.error_correlation(kind, (i, j), about));
         let factor = linalg::cholesky(alike.as_slice(), m, 0.0)?;
         let between = linalg::inverse(&factor);
         let mut gram = DMatrix::zeros(n, n);
@@ -119,7 +120,7 @@ impl Touched<'_> {
         let likelihood = -0.5 * (determinants + freedom * squares.max(f64::MIN_POSITIVE).ln());
         let unknowns = DVector::from_vec(unknowns);
         let is_finite = covariance.iter().chain(unknowns.iter()).all(|it| it.is_finite());
-        (is_finite && likelihood.is_finite()).then_some(Fitted { unknowns, covariance, likelihood })
+        (is_finite && likelihood.is_finite()).then_some(TipErrorFit { unknowns, covariance, likelihood })
     }
 
     /// Derivatives of a touch by its tip and its point, each with its first unknown.
@@ -130,27 +131,27 @@ impl Touched<'_> {
     }
 
     /// Correlation of the errors of two touches.
-    fn alike(&self, kind: Alike, (i, j): (usize, usize), about: &Vector3<f64>) -> f64 {
+    fn error_correlation(&self, kind: TipErrorPattern, (i, j): (usize, usize), about: &Vector3<f64>) -> f64 {
         if i == j {
             return 1.0;
         }
         let between = self.poses[self.kept[i]].rotation.transpose() * self.poses[self.kept[j]].rotation;
         let cosine = match kind {
-            Alike::Never => return 0.0,
-            Alike::Turned(_) => 0.5 * (between.trace() - 1.0),
-            Alike::Tilted(_) => about.dot(&(between * about)),
+            TipErrorPattern::Never => return 0.0,
+            TipErrorPattern::Turned(_) => 0.5 * (between.trace() - 1.0),
+            TipErrorPattern::Tilted(_) => about.dot(&(between * about)),
         };
         let angle = cosine.clamp(-1.0, 1.0).acos();
         kind.share() * (-0.5 * (angle / ALIKE).powi(2)).exp()
     }
 }
 
-impl Alike {
+impl TipErrorPattern {
     /// Share of the variance that follows the orientation.
     fn share(self) -> f64 {
         match self {
-            Alike::Never => 0.0,
-            Alike::Turned(share) | Alike::Tilted(share) => share,
+            TipErrorPattern::Never => 0.0,
+            TipErrorPattern::Turned(share) | TipErrorPattern::Tilted(share) => share,
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::draw::Draw;
-use super::{FindingKind, Level, Tool, Touches, tool_tip};
+use super::draw::LinearCongruential;
+use super::{FindingKind, HandEyeLevel, TouchedTool, Touches, tool_tip};
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::elbow;
@@ -14,7 +14,7 @@ const TIP: [f64; 3] = [0.15, 0.012, -0.003];
 const PIN: [f64; 3] = [0.75, 0.1, 0.35];
 
 /// An arm whose joints deviate from their nominal pose in the joint before, by these standard deviations of angle and position.
-fn off(nominal: &Robot, rotation_rad: f64, position_m: f64, draw: &mut Draw) -> Robot {
+fn perturb_arm(nominal: &Robot, rotation_rad: f64, position_m: f64, draw: &mut LinearCongruential) -> Robot {
     let mut motion = Pose::identity();
     let mut screws = Vec::new();
     for joint in &nominal.joints {
@@ -32,7 +32,7 @@ fn off(nominal: &Robot, rotation_rad: f64, position_m: f64, draw: &mut Draw) -> 
 }
 
 /// Pose on the pendant in a configuration near which the actual arm's tip touches the pin, with noise of each component.
-fn shown(nominal: &Robot, actual: &Robot, readings: &[f64], noise: Vector3<f64>) -> Pose {
+fn shown_pose(nominal: &Robot, actual: &Robot, readings: &[f64], noise: Vector3<f64>) -> Pose {
     let pose = nominal.forward_kinematics(readings);
     let error = actual.forward_kinematics(readings) * pose.inverse();
     let (tip, pin) = (Vector3::from(TIP), Vector3::from(PIN));
@@ -41,14 +41,18 @@ fn shown(nominal: &Robot, actual: &Robot, readings: &[f64], noise: Vector3<f64>)
 }
 
 /// A configuration whose tool points down, tilted by the fifth joint and turned about itself by the last one.
-fn tilted(draw: &mut Draw) -> Vec<f64> {
+fn draw_tilted(draw: &mut LinearCongruential) -> Vec<f64> {
     let middle = [0.1, 0.5, -0.4, 0.0, 0.9, 0.0];
     let spread = [0.25, 0.12, 0.12, 0.6, 0.5, 2.4];
-    middle.iter().zip(spread).map(|(middle, spread)| middle + spread * (2.0 * draw.uniform() - 1.0)).collect()
+    middle
+        .iter()
+        .zip(spread)
+        .map(|(middle, spread)| middle + spread * (2.0 * draw.uniform_number() - 1.0))
+        .collect()
 }
 
 /// Three touches that turn the last joint alone, and two that are tilted.
-fn upright() -> [Vec<f64>; 5] {
+fn upright_touches() -> [Vec<f64>; 5] {
     let turned = |last: f64| vec![0.1, 0.5, -0.4, 0.0, 0.9, last];
     [
         turned(0.0),
@@ -59,12 +63,12 @@ fn upright() -> [Vec<f64>; 5] {
     ]
 }
 
-fn solved(poses: Vec<Pose>) -> Result<Tool> {
+fn solve_tip(poses: Vec<Pose>) -> Result<TouchedTool> {
     let touches = Touches { flange: poses.into(), ..Touches::default() };
     tool_tip(&touches, &|row| format!("touch {}", row + 1))
 }
 
-fn miss_m(found: &Tool) -> f64 {
+fn miss_m(found: &TouchedTool) -> f64 {
     (found.tips[0].placed.pose.translation - Vector3::from(TIP)).norm()
 }
 
@@ -75,20 +79,20 @@ fn tips_on_arms_with_errors_are_within_their_bounds_as_often_as_promised() {
     let nominal = elbow();
     let (mut inside, mut good, mut bounds) = (0, 0, Vec::new());
     for seed in sessions.seeds() {
-        let mut draw = Draw::new(seed + 300);
-        let actual = off(&nominal, 0.03f64.to_radians(), 2e-4, &mut draw);
+        let mut draw = LinearCongruential::new(seed + 300);
+        let actual = perturb_arm(&nominal, 0.03f64.to_radians(), 2e-4, &mut draw);
         let count = 4 + (seed % 9) as usize;
         let poses = (0..count).map(|_| {
-            let (readings, noise) = (tilted(&mut draw), draw.vector(1e-4));
-            shown(&nominal, &actual, &readings, noise)
+            let (readings, noise) = (draw_tilted(&mut draw), draw.vector(1e-4));
+            shown_pose(&nominal, &actual, &readings, noise)
         });
-        let found = solved(poses.collect()).unwrap();
+        let found = solve_tip(poses.collect()).unwrap();
         let bound = found.tips[0].placed.bound95_m;
         inside += usize::from(miss_m(&found) <= bound);
-        good += usize::from(found.level == Level::Good);
+        good += usize::from(found.level == HandEyeLevel::Good);
         bounds.push(1e3 * bound);
         assert!(
-            found.level != Level::DoNotUse && bound < 0.02,
+            found.level != HandEyeLevel::DoNotUse && bound < 0.02,
             "{seed}: {} {:?}",
             1e3 * bound,
             found.reasons
@@ -114,12 +118,12 @@ fn touches_that_alone_show_the_length_are_not_left_out() {
     let nominal = elbow();
     let (mut inside, mut worst): (usize, f64) = (0, 0.0);
     for seed in sessions.seeds() {
-        let mut draw = Draw::new(seed + 900);
+        let mut draw = LinearCongruential::new(seed + 900);
         let touch = |(at, readings): (usize, &Vec<f64>)| {
             let noise = draw.vector(if at < 3 { 1.5e-4 } else { 4e-3 });
-            shown(&nominal, &nominal, readings, noise)
+            shown_pose(&nominal, &nominal, readings, noise)
         };
-        let found = solved(upright().iter().enumerate().map(touch).collect()).unwrap();
+        let found = solve_tip(upright_touches().iter().enumerate().map(touch).collect()).unwrap();
         assert!(found.outliers.is_empty(), "{seed}: {:?}", found.outliers);
         worst = worst.max(miss_m(&found));
         inside += usize::from(miss_m(&found) <= found.tips[0].placed.bound95_m);
@@ -136,15 +140,15 @@ fn touches_that_alone_show_the_length_are_not_left_out() {
 #[test]
 fn a_wrong_touch_among_many_is_left_out_and_named() {
     let nominal = elbow();
-    let mut draw = Draw::new(5);
+    let mut draw = LinearCongruential::new(5);
     let mut poses: Vec<Pose> = (0..9)
         .map(|_| {
-            let (readings, noise) = (tilted(&mut draw), draw.vector(1e-4));
-            shown(&nominal, &nominal, &readings, noise)
+            let (readings, noise) = (draw_tilted(&mut draw), draw.vector(1e-4));
+            shown_pose(&nominal, &nominal, &readings, noise)
         })
         .collect();
     poses[6].translation.x += 4e-3;
-    let found = solved(poses).unwrap();
+    let found = solve_tip(poses).unwrap();
     println!("{:?} {:.3} mm", found.outliers, 1e3 * miss_m(&found));
     assert_eq!(found.outliers, [6]);
     assert!(found.findings.iter().any(|it| it.kind == FindingKind::Outliers));
@@ -155,16 +159,16 @@ fn a_wrong_touch_among_many_is_left_out_and_named() {
 #[test]
 fn poses_of_the_tip_itself_are_named() {
     let nominal = elbow();
-    let mut draw = Draw::new(8);
+    let mut draw = LinearCongruential::new(8);
     let tip = Pose::from_translation(TIP.into());
     let poses: Vec<Pose> = (0..8)
         .map(|_| {
-            let (readings, noise) = (tilted(&mut draw), draw.vector(3e-4));
-            shown(&nominal, &nominal, &readings, noise) * tip
+            let (readings, noise) = (draw_tilted(&mut draw), draw.vector(3e-4));
+            shown_pose(&nominal, &nominal, &readings, noise) * tip
         })
         .collect();
-    let found = solved(poses).unwrap();
+    let found = solve_tip(poses).unwrap();
     println!("{:?}", found.reasons);
-    assert_eq!(found.level, Level::DoNotUse);
+    assert_eq!(found.level, HandEyeLevel::DoNotUse);
     assert!(found.reasons[0].contains("these are poses of the tip, whose tool was active in the controller"));
 }

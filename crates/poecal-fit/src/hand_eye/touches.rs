@@ -32,7 +32,7 @@ pub struct Touches {
 }
 
 /// Names of tips and points, and those of each row.
-pub(crate) struct Layout {
+pub(crate) struct TouchLayout {
     pub(crate) tips: Vec<String>,
     pub(crate) points: Vec<String>,
     /// Tip and point of each row.
@@ -40,16 +40,16 @@ pub(crate) struct Layout {
 }
 
 /// A fit: all unknowns, tips first, and the rows that count.
-pub(crate) struct TipFit {
+pub(crate) struct TouchFit {
     pub(crate) unknowns: Vec<f64>,
     pub(crate) kept: Vec<bool>,
     pub(crate) sigma_m: f64,
     pub(crate) freedom: f64,
 }
 
-impl Layout {
+impl TouchLayout {
     pub(crate) fn from_touches(touches: &Touches) -> Self {
-        let mut layout = Layout { tips: Vec::new(), points: Vec::new(), rows: Vec::new() };
+        let mut layout = TouchLayout { tips: Vec::new(), points: Vec::new(), rows: Vec::new() };
         let index = |names: &mut Vec<String>, name: Option<&String>| {
             let name = name.cloned().unwrap_or_default();
             names.iter().position(|it| *it == name).unwrap_or_else(|| {
@@ -89,7 +89,7 @@ impl Layout {
     }
 
     /// Least squares with a weight of each row.
-    fn solved(&self, poses: &[Pose], weights: &[f64]) -> Option<Vec<f64>> {
+    fn solve_weighted(&self, poses: &[Pose], weights: &[f64]) -> Option<Vec<f64>> {
         let n = self.unknowns();
         let (mut gram, mut right) = (vec![0.0; n * n], vec![0.0; n]);
         for ((pose, (tip, point)), weight) in poses.iter().zip(&self.rows).zip(weights) {
@@ -119,15 +119,15 @@ impl Layout {
     }
 
     /// The fit without outliers: first by least absolute distances, then by least squares of the rows that agree.
-    pub(crate) fn robustly(&self, poses: &[Pose]) -> Option<TipFit> {
+    pub(crate) fn robustly(&self, poses: &[Pose]) -> Option<TouchFit> {
         let mut weights = vec![1.0; poses.len()];
         let (_, tilted) = self.least_tilted(poses, &vec![true; poses.len()]);
-        let mut unknowns = self.solved(poses, &weights)?;
+        let mut unknowns = self.solve_weighted(poses, &weights)?;
         for _ in 0..ROUNDS {
             let lengths: Vec<f64> = self.misses(poses, &unknowns).iter().map(Vector3::norm).collect();
             let middle = median(lengths.iter().copied())?.max(1e-9);
             weights = lengths.iter().map(|it| middle / it.max(0.1 * middle)).collect();
-            unknowns = self.solved(poses, &weights)?;
+            unknowns = self.solve_weighted(poses, &weights)?;
         }
         let lengths = self.misses(poses, &unknowns).iter().map(Vector3::norm).collect::<Vec<f64>>();
         // A few touches have little redundancy.
@@ -143,7 +143,7 @@ impl Layout {
                 next.fill(true);
             }
             weights = next.iter().map(|it| f64::from(u8::from(*it))).collect();
-            unknowns = self.solved(poses, &weights)?;
+            unknowns = self.solve_weighted(poses, &weights)?;
             let misses = self.misses(poses, &unknowns);
             let squares: f64 =
                 misses.iter().zip(&weights).map(|(miss, weight)| weight * miss.norm_squared()).sum();
@@ -155,7 +155,7 @@ impl Layout {
                 break;
             }
         }
-        Some(TipFit { unknowns, kept, sigma_m, freedom })
+        Some(TouchFit { unknowns, kept, sigma_m, freedom })
     }
 
     /// True if the remaining rows determine all that all touches do, also without any one of them. Rows that alone determine a direction
@@ -202,9 +202,9 @@ impl Layout {
     }
 }
 
-impl TipFit {
+impl TouchFit {
     /// Root mean square distance of the rows that count.
-    pub(crate) fn rms(&self, poses: &[Pose], layout: &Layout) -> f64 {
+    pub(crate) fn rms(&self, poses: &[Pose], layout: &TouchLayout) -> f64 {
         let misses = layout.misses(poses, &self.unknowns);
         let kept: Vec<f64> = misses
             .iter()

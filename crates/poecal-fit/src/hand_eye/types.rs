@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::CameraPlace;
-use super::bounds::Placed;
+use super::CameraMounting;
+use super::bounds::FrameEstimate;
 use super::findings::{Finding, FindingKind};
 use super::unknown_lens::FoundLens;
 
@@ -30,7 +30,7 @@ impl Directions {
 
 /// Usability of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum HandEyeLevel {
     /// Not usable: the errors of the frames may exceed their bounds.
     DoNotUse,
     /// Usable within its bounds, which further poses would make smaller.
@@ -39,13 +39,13 @@ pub enum Level {
     Good,
 }
 
-impl Level {
+impl HandEyeLevel {
     /// The level, with the reasons against any use, else with the reasons against use without its bounds.
     pub(crate) fn from_reasons(against: Vec<String>, weak: Vec<String>) -> (Self, Vec<String>) {
         match (against.is_empty(), weak.is_empty()) {
-            (false, _) => (Level::DoNotUse, against),
-            (true, false) => (Level::WithinBounds, weak),
-            (true, true) => (Level::Good, Vec::new()),
+            (false, _) => (HandEyeLevel::DoNotUse, against),
+            (true, false) => (HandEyeLevel::WithinBounds, weak),
+            (true, true) => (HandEyeLevel::Good, Vec::new()),
         }
     }
 
@@ -53,9 +53,9 @@ impl Level {
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
-            Level::DoNotUse => "do not use",
-            Level::WithinBounds => "use within its bounds",
-            Level::Good => "good",
+            HandEyeLevel::DoNotUse => "do not use",
+            HandEyeLevel::WithinBounds => "use within its bounds",
+            HandEyeLevel::Good => "good",
         }
     }
 
@@ -63,9 +63,9 @@ impl Level {
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            Level::DoNotUse => "do_not_use",
-            Level::WithinBounds => "within_bounds",
-            Level::Good => "good",
+            HandEyeLevel::DoNotUse => "do_not_use",
+            HandEyeLevel::WithinBounds => "within_bounds",
+            HandEyeLevel::Good => "good",
         }
     }
 }
@@ -74,7 +74,7 @@ impl Level {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HandEyeOptions {
     /// Mounting of the camera.
-    pub camera: CameraPlace,
+    pub camera: CameraMounting,
     /// True if the arm's poses are `flange_from_base`; determined from the poses if not stated.
     pub flange_inverted: Option<bool>,
     /// True if the camera's poses are `target_from_camera`; determined from the poses if not stated.
@@ -84,14 +84,14 @@ pub struct HandEyeOptions {
 impl HandEyeOptions {
     /// Options with directions that are determined from the poses.
     #[must_use]
-    pub fn new(camera: CameraPlace) -> Self {
+    pub fn new(camera: CameraMounting) -> Self {
         HandEyeOptions { camera, flange_inverted: None, target_inverted: None }
     }
 }
 
 /// A row that contradicts the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outlier {
+pub struct HandEyeOutlier {
     /// The row, from 0.
     pub row: usize,
     /// Distance of the target from its position predicted by the others, metres.
@@ -104,7 +104,7 @@ pub struct Outlier {
 
 /// Error of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowError {
+pub struct HandEyeRowError {
     /// Distance of the target from its predicted position, metres.
     pub shift_m: f64,
     /// Angle of its orientation from the predicted one, radians.
@@ -115,7 +115,7 @@ pub struct RowError {
 
 /// Errors of rows, each predicted by a fit without it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HeldOut {
+pub struct HeldOutErrors {
     /// Number of rows.
     pub rows: usize,
     /// Root mean square distance, metres.
@@ -127,7 +127,7 @@ pub struct HeldOut {
 /// Rotation of the flange between its poses: standard deviations of its rotations about the three directions of greatest, middle and
 /// least, and these directions in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turns {
+pub struct FlangeTurns {
     /// Standard deviations, radians.
     pub spread_rad: [f64; 3],
     /// Directions in the flange's frame.
@@ -138,15 +138,15 @@ pub struct Turns {
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandEye {
     /// Mounting of the camera.
-    pub camera: CameraPlace,
+    pub camera: CameraMounting,
     /// Pose of the mounted object (camera or target), in the flange's frame.
-    pub on_flange: Placed,
+    pub on_flange: FrameEstimate,
     /// Pose of the static object (target or camera), in the base frame.
-    pub in_base: Placed,
+    pub in_base: FrameEstimate,
     /// Directions of the lists.
     pub directions: Directions,
     /// Usability of the result.
-    pub level: Level,
+    pub level: HandEyeLevel,
     /// Reasons of the level, a sentence each.
     pub reasons: Vec<String>,
     /// Standard deviations of the camera's poses: across and along the line of sight (metres), tilts and turn about it (radians).
@@ -156,13 +156,13 @@ pub struct HandEye {
     /// Root mean square errors of the rows that count, metres and radians.
     pub residual: (f64, f64),
     /// Errors of rows that were predicted by the others; `None` with fewer than six.
-    pub held_out: Option<HeldOut>,
+    pub held_out: Option<HeldOutErrors>,
     /// Errors of all rows.
-    pub rows: Vec<RowError>,
+    pub rows: Vec<HandEyeRowError>,
     /// Rows that contradict the others.
-    pub outliers: Vec<Outlier>,
+    pub outliers: Vec<HandEyeOutlier>,
     /// Rotation of the flange.
-    pub turns: Turns,
+    pub turns: FlangeTurns,
     /// Findings, a sentence each.
     pub findings: Vec<Finding>,
     /// Lens, if it was unknown.
@@ -172,10 +172,10 @@ pub struct HandEye {
 impl HandEye {
     /// Frame of the camera: on the flange, or in the base.
     #[must_use]
-    pub fn camera_frame(&self) -> &Placed {
+    pub fn camera_frame(&self) -> &FrameEstimate {
         match self.camera {
-            CameraPlace::InHand => &self.on_flange,
-            CameraPlace::Beside => &self.in_base,
+            CameraMounting::InHand => &self.on_flange,
+            CameraMounting::Beside => &self.in_base,
         }
     }
 
@@ -190,8 +190,8 @@ impl HandEye {
 
     /// Adds a reason for which the result is usable only within its bounds.
     pub fn weaken(&mut self, reason: String) {
-        if self.level != Level::DoNotUse {
-            self.level = Level::WithinBounds;
+        if self.level != HandEyeLevel::DoNotUse {
+            self.level = HandEyeLevel::WithinBounds;
             self.reasons.push(reason);
         }
     }

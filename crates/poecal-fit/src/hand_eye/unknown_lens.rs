@@ -27,7 +27,7 @@ pub struct FoundLens {
 
 impl UnknownLens {
     /// Poses of the rows by their corners as these are numbered, and the turn of a board that was counted from its other end.
-    pub(crate) fn chosen(&self, target: &[Pose]) -> Vec<(Pose, Pose)> {
+    pub(crate) fn choose_poses(&self, target: &[Pose]) -> Vec<(Pose, Pose)> {
         let pictures = &self.state.pictures;
         let of = |(row, chosen): (usize, &Pose)| {
             let Some(picture) = pictures.all.get(row) else { return (*chosen, Pose::identity()) };

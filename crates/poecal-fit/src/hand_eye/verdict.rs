@@ -2,7 +2,7 @@
 
 use super::findings::{Finding, FindingKind};
 use super::scale::{self, NO_CAMERA};
-use super::types::{HandEye, Level};
+use super::types::{HandEye, HandEyeLevel};
 use poecal_model::camera::PictureNumber;
 
 /// Number of rows from which on a result is tested well.
@@ -30,7 +30,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
         against.push(statement);
     }
-    against.extend(said(result, FindingKind::Exchanged));
+    against.extend(find_statement(result, FindingKind::Exchanged));
     if share > MANY {
         against.push(format!("{outliers} of {} poses contradict the others", fitted + outliers));
     } else if share > FEW {
@@ -41,7 +41,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
         against.push(statement);
     }
     if against.is_empty() {
-        weak.extend(inaccurate(result, distance_m));
+        weak.extend(list_inaccuracies(result, distance_m));
     }
     if fitted < ENOUGH {
         weak.push(format!("{fitted} poses show little of their own errors: take 15 or more"));
@@ -54,7 +54,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     if result.findings.iter().any(|it| it.kind == FindingKind::Moved) {
         weak.push("something moved during the session".to_owned());
     }
-    (result.level, result.reasons) = Level::from_reasons(against, weak);
+    (result.level, result.reasons) = HandEyeLevel::from_reasons(against, weak);
 }
 
 /// Reason why poses with this noise (across, along, tilts, turn) do not fit together, if they do not.
@@ -77,9 +77,9 @@ pub(crate) fn inconsistent(of: &[f64; 4], distance_m: f64) -> Option<String> {
 }
 
 /// Causes of an inaccurate camera position: an unknown lens, whose findings are added, and a wide bound.
-fn inaccurate(result: &mut HandEye, distance_m: f64) -> Vec<String> {
+fn list_inaccuracies(result: &mut HandEye, distance_m: f64) -> Vec<String> {
     let mut weak = of_lens(result);
-    let bent = result.lens.as_ref().and_then(|lens| bent(&lens.numbers));
+    let bent = result.lens.as_ref().and_then(|lens| describe_bent_board(&lens.numbers));
     let of_lens = weak.iter().cloned().chain(bent).map(|it| Finding::new(FindingKind::Lens, it, Vec::new()));
     result.findings.extend(of_lens);
     let bound = result.camera_frame().bound95_m;
@@ -95,7 +95,7 @@ fn inaccurate(result: &mut HandEye, distance_m: f64) -> Vec<String> {
 }
 
 /// A board that is bent by more than its uncertainty; the estimate contains the bend.
-fn bent(numbers: &[PictureNumber]) -> Option<String> {
+fn describe_bent_board(numbers: &[PictureNumber]) -> Option<String> {
     const EVIDENT: f64 = 4.0;
     let bends = || numbers.iter().filter(|it| it.unit == "mm");
     let most = bends().max_by(|a, b| a.found.abs().total_cmp(&b.found.abs()))?;
@@ -136,7 +136,7 @@ fn of_lens(result: &HandEye) -> Vec<String> {
 }
 
 /// Statement of a kind of finding, if there is one.
-fn said(result: &HandEye, kind: FindingKind) -> Option<String> {
+fn find_statement(result: &HandEye, kind: FindingKind) -> Option<String> {
     result.findings.iter().find(|it| it.kind == kind).map(|it| it.statement.clone())
 }
 

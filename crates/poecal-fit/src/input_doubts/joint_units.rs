@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::{Doubt, DoubtPlace, ReadColumn, SHARE, short, state_it};
-use poecal_model::robot::{Joint, JointKind, Limits, Robot};
+use super::{DoubtLocation, InputDoubt, ReadColumn, SHARE, format_short, state_it};
+use poecal_model::robot::{Joint, JointKind, JointLimits, Robot};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::text::NamedLines;
 use poecal_numerics::unit::Unit;
@@ -25,12 +25,12 @@ const ROUNDING: f64 = 1e-6;
 /// Collects the joint values of a file.
 #[derive(Clone, Debug)]
 pub struct JointWatch<'a> {
-    joints: Vec<OneJoint<'a>>,
+    joints: Vec<JointUnitCheck<'a>>,
     rows: usize,
 }
 
 #[derive(Clone, Debug)]
-struct OneJoint<'a> {
+struct JointUnitCheck<'a> {
     joint: &'a Joint,
     reading: usize,
     /// True if a whole turn of its reading is one of the joint, and of no other.
@@ -50,7 +50,7 @@ impl<'a> JointWatch<'a> {
     #[must_use]
     pub fn new(robot: &'a Robot) -> Self {
         let joints = robot.joints.iter().zip(robot.reading_indices());
-        let joints = joints.map(|(joint, reading)| OneJoint {
+        let joints = joints.map(|(joint, reading)| JointUnitCheck {
             joint,
             reading,
             is_periodic: joint.kind == JointKind::Revolute
@@ -105,9 +105,9 @@ impl<'a> JointWatch<'a> {
     ///
     /// # Errors
     /// Doubt if only another unit explains the readings.
-    pub fn finish(&self, columns: &[ReadColumn<'_>]) -> Result<Vec<String>, Doubt> {
+    pub fn finish(&self, columns: &[ReadColumn<'_>]) -> Result<Vec<String>, InputDoubt> {
         let turned = self.joints.iter().filter(|one| one.turned.count > 0);
-        let mut warnings: Vec<String> = turned.map(OneJoint::turn_warning).collect();
+        let mut warnings: Vec<String> = turned.map(JointUnitCheck::turn_warning).collect();
         for one in self.joints.iter().filter(|one| one.beyond.count > 0 || one.turned.count > 0) {
             let Some(column) = columns.get(one.reading) else { continue };
             let Some((lowest, highest)) = column.range else { continue };
@@ -125,7 +125,7 @@ impl<'a> JointWatch<'a> {
                     Some(counts) => one.counts_message(column, counts),
                     None => one.unit_message(column, likely, is_per_cent),
                 };
-                return Err(Doubt::new(DoubtPlace::Cell(line, character), message));
+                return Err(InputDoubt::new(DoubtLocation::Cell(line, character), message));
             }
             if let Some(limits) = one.joint.limits.filter(|_| one.beyond.count > 0) {
                 warnings.push(one.limit_warning(limits, NamedUnit::from(column.unit.si_unit())));
@@ -161,7 +161,7 @@ impl<'a> JointWatch<'a> {
     }
 }
 
-impl OneJoint<'_> {
+impl JointUnitCheck<'_> {
     /// True if a reading is inside the limits widened by `slack`; without limits, if it is not too large.
     fn allows(&self, reading: f64, slack: f64) -> bool {
         let value = self.joint.reading.value(reading);
@@ -260,8 +260,8 @@ impl OneJoint<'_> {
         format!(
             "found whole numbers from {} to {}, expected angles: most likely they are counts of an encoder, {counts} a turn with the zero at {zero}, \
              which a mapping (--columns) reads by lines under `[joints]` such as `{} = {{ columns = {{ {name} = {degrees} }}, unit = \"deg\", offset = -180 }}`",
-            short(self.raw[0]),
-            short(self.raw[1]),
+            format_short(self.raw[0]),
+            format_short(self.raw[1]),
             self.joint.name
         )
     }
@@ -274,8 +274,8 @@ impl OneJoint<'_> {
                 let si = NamedUnit::from(input.unit.si_unit()).symbol();
                 format!(
                     "far outside the limits {} to {} {si} of joint `{}`",
-                    short(limits.lower),
-                    short(limits.upper),
+                    format_short(limits.lower),
+                    format_short(limits.upper),
                     self.joint.name
                 )
             }
@@ -293,18 +293,18 @@ impl OneJoint<'_> {
         format!(
             "found readings of up to {} {stated}, {outside}, expected another unit{likely}; \
              write `{}[{symbol}]` in the header, or {}{per_cent}",
-            short(extreme),
+            format_short(extreme),
             input.name,
             state_it(input.unit_from, symbol)
         )
     }
 
-    fn limit_warning(&self, limits: Limits, unit: NamedUnit) -> String {
+    fn limit_warning(&self, limits: JointLimits, unit: NamedUnit) -> String {
         format!(
             "joint `{}` lies beyond its limits {} to {} {} in {} {} ({})",
             self.joint.name,
-            short(limits.lower),
-            short(limits.upper),
+            format_short(limits.lower),
+            format_short(limits.upper),
             unit.symbol(),
             self.beyond.count,
             if self.beyond.count == 1 { "row" } else { "rows" },

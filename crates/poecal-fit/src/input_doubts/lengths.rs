@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Doubt, DoubtPlace, ReadColumn, SHARE, short, state_it};
+use super::{DoubtLocation, InputDoubt, ReadColumn, SHARE, format_short, state_it};
 use poecal_model::measurement::Observation;
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::{median, median_point};
@@ -17,7 +17,7 @@ pub const REACHES: f64 = 20.0;
 /// Doubt about distances that differ by more than the robot reaches: their unit must be smaller. `slides_m` is the motion of prismatic joints
 /// without limits.
 #[must_use]
-pub fn of_ranges(robot: &Robot, slides_m: f64, rows: &[Observation]) -> Option<Doubt> {
+pub fn of_ranges(robot: &Robot, slides_m: f64, rows: &[Observation]) -> Option<InputDoubt> {
     let ranged = || rows.iter().filter_map(|row| Some((row.measurement.range()?, row)));
     let middle = median(ranged().map(|(range, _)| range))?;
     let reach = robot.reach_m() + slides_m;
@@ -30,10 +30,10 @@ pub fn of_ranges(robot: &Robot, slides_m: f64, rows: &[Observation]) -> Option<D
     let message = format!(
         "found distances up to {} m from their middle, where the robot reaches {} m, expected another unit, most likely mm; write \
          the unit in the header, as `distance[mm]`",
-        short((range - middle).abs()),
-        short(reach)
+        format_short((range - middle).abs()),
+        format_short(reach)
     );
-    Some(Doubt::new(DoubtPlace::Line(row.source.line as usize), message))
+    Some(InputDoubt::new(DoubtLocation::Line(row.source.line as usize), message))
 }
 
 /// Doubt about positions of columns x, y, z whose spread reveals that their unit must be smaller.
@@ -43,7 +43,7 @@ pub fn of_positions(
     columns: [ReadColumn<'_>; 3],
     slides_m: f64,
     rows: &[Observation],
-) -> Option<Doubt> {
+) -> Option<InputDoubt> {
     // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
     let placed = || rows.iter().filter_map(|row| Some((row.measurement.position()?, row)));
@@ -63,7 +63,7 @@ pub fn of_positions(
     let far_of =
         |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
     let message = positions_message(columns, [0, 1, 2].map(far_of), apart, reach)?;
-    Some(Doubt::new(DoubtPlace::Line(line as usize), message))
+    Some(InputDoubt::new(DoubtLocation::Line(line as usize), message))
 }
 
 /// Message about positions far from their middle, by the largest distance in each coordinate; `None` without a smaller unit.
@@ -109,8 +109,8 @@ fn positions_message(
     Some(format!(
         "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
          unit, most likely {smaller}; write `{}` in the header, or {}",
-        short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
-        short(unit.from_si(reach)),
+        format_short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
+        format_short(unit.from_si(reach)),
         written.join(","),
         state_it(columns[own[0]].unit_from, smaller),
         stated = unit.symbol(),

@@ -1,10 +1,10 @@
 //! Doubts about rows as they were read, by the nominal robot: units, turns, boards, and joined data (docs/file-formats.md, "Measurements").
 //!
-//! Each rule takes numbers with the known facts of their columns, and returns a [`Doubt`]: one sentence with its evidence, and its place in the file.
+//! Each rule takes numbers with the known facts of their columns, and returns a [`InputDoubt`]: one sentence with its evidence, and its place in the file.
 //! The readers of files refuse it at that place.
 
 pub mod boards;
-pub mod joined;
+pub mod joined_rows;
 pub mod joint_units;
 pub mod lengths;
 pub mod picture_sizes;
@@ -34,16 +34,16 @@ pub struct ReadColumn<'a> {
 
 /// Most likely mistake in the rows that were read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Doubt {
+pub struct InputDoubt {
     /// Place in the file.
-    pub place: DoubtPlace,
+    pub place: DoubtLocation,
     /// Message: found, expected, and remedy.
     pub message: String,
 }
 
 /// Place of a doubt in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DoubtPlace {
+pub enum DoubtLocation {
     /// Line and column (characters, from 1) of a cell.
     Cell(usize, usize),
     /// A line of the file.
@@ -52,11 +52,11 @@ pub enum DoubtPlace {
     Head(usize),
 }
 
-impl Doubt {
+impl InputDoubt {
     /// Doubt at a place.
     #[must_use]
-    pub fn new(place: DoubtPlace, message: String) -> Self {
-        Doubt { place, message }
+    pub fn new(place: DoubtLocation, message: String) -> Self {
+        InputDoubt { place, message }
     }
 
     /// Error of a file; without the place of a column's head, which only the reader of the file knows.
@@ -64,9 +64,9 @@ impl Doubt {
     pub fn error(self, kind: ErrorKind, path: &Path) -> Error {
         let error = kind.error(self.message);
         match self.place {
-            DoubtPlace::Cell(line, column) => error.at(path, line, column),
-            DoubtPlace::Line(line) => error.at_line(path, line),
-            DoubtPlace::Head(_) => error.in_file(path),
+            DoubtLocation::Cell(line, column) => error.at_position(path, line, column),
+            DoubtLocation::Line(line) => error.at_line(path, line),
+            DoubtLocation::Head(_) => error.in_file(path),
         }
     }
 }
@@ -82,6 +82,6 @@ fn state_it(unit_from: UnitSource, symbol: &str) -> String {
 }
 
 /// A number to four significant digits.
-fn short(value: f64) -> String {
+fn format_short(value: f64) -> String {
     format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
 }

@@ -1,8 +1,8 @@
 //! Sizes of pictures that lenses state, compared with the measured corners.
 
-use super::{Doubt, DoubtPlace};
+use super::{DoubtLocation, InputDoubt};
 use poecal_model::camera::{Camera, Corner};
-use poecal_numerics::error::shown;
+use poecal_numerics::error::shorten_name;
 
 /// Pixels beyond the edge of a picture at which a corner may be found: detectors refine corners that they find at the edge.
 const BEYOND: f64 = 2.0;
@@ -17,7 +17,7 @@ const REACH: f64 = 0.9;
 ///
 /// # Errors
 /// Doubt about corners outside the pictures that the lenses state.
-pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Result<Vec<String>, Doubt> {
+pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Result<Vec<String>, InputDoubt> {
     let mut said = Vec::new();
     for (at, camera) in cameras.iter().enumerate() {
         let Some(size) = camera.lens.size_px.map(|size| size.map(f64::from)) else { continue };
@@ -27,8 +27,8 @@ pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Resul
         };
         if let Some(first) = corners.iter().find(is_outside) {
             let count = corners.iter().filter(is_outside).count();
-            let message = outside(camera, size, &corners, (first, count));
-            return Err(Doubt::new(DoubtPlace::Line(first.line as usize), message));
+            let message = outside_error(camera, size, &corners, (first, count));
+            return Err(InputDoubt::new(DoubtLocation::Line(first.line as usize), message));
         }
         if let Some(part) = (2..=4).find(|part| fill(size.map(|it| it / f64::from(*part)), &corners)) {
             let ([width, height], [x, y]) = (size, size.map(|it| it / f64::from(part)));
@@ -44,7 +44,11 @@ pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Resul
 
 /// Owner of corners or a lens, for a camera that has a name.
 fn camera_phrase(camera: &Camera) -> String {
-    if camera.name.is_empty() { String::new() } else { format!(" of the camera `{}`", shown(&camera.name)) }
+    if camera.name.is_empty() {
+        String::new()
+    } else {
+        format!(" of the camera `{}`", shorten_name(&camera.name))
+    }
 }
 
 /// Least and largest pixel of corners along an axis.
@@ -63,7 +67,12 @@ fn fill(size: [f64; 2], corners: &[&Corner]) -> bool {
 }
 
 /// Error of a corner that is outside, with the ratio of the sizes.
-fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count): (&Corner, usize)) -> String {
+fn outside_error(
+    camera: &Camera,
+    size: [f64; 2],
+    corners: &[&Corner],
+    (first, count): (&Corner, usize),
+) -> String {
     let most = [0, 1].map(|axis| extent(corners, axis).1);
     let times = [0, 1].map(|axis| most[axis] / size[axis]);
     let is_like = times[0] > 1.2 && (times[0] / times[1] - 1.0).abs() < 0.2;

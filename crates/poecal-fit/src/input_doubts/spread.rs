@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::{Doubt, DoubtPlace, ReadColumn, short};
+use super::{DoubtLocation, InputDoubt, ReadColumn, format_short};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Mount, Robot};
-use poecal_model::simulate::seen;
+use poecal_model::simulate::instrument_from_target;
 use poecal_numerics::distributions::{median, median_point};
 use poecal_numerics::named_unit::{NamedUnit, units_of};
 use poecal_numerics::unit::Unit;
@@ -39,7 +39,7 @@ pub fn of_positions(
     x: usize,
     data: &Dataset,
     first: usize,
-) -> Option<Doubt> {
+) -> Option<InputDoubt> {
     let step = data.len().saturating_sub(first).div_ceil(ROWS).max(1);
     let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
     let input = columns.get(x).filter(|_| rows.len() >= FEWEST_ROWS)?;
@@ -57,7 +57,7 @@ pub fn of_positions(
                 .collect();
             match pair_of(robot, data, row) {
                 (None, None) => robot.forward_kinematics(&readings).translation,
-                pair => seen(robot, &Pose::identity(), pair, &readings).translation,
+                pair => instrument_from_target(robot, &Pose::identity(), pair, &readings).translation,
             }
         };
         rows.iter().map(tip).collect()
@@ -71,14 +71,14 @@ pub fn of_positions(
         let as_radians = modelled(1f64.to_degrees());
         if as_radians > smallest && is_about(measured / as_radians, 1.0) {
             let message = angle_message(&columns[angle], measured, as_read);
-            return Some(Doubt::new(DoubtPlace::Head(angle), message));
+            return Some(InputDoubt::new(DoubtLocation::Head(angle), message));
         }
     }
     let ratio = measured / as_read;
     let factor = THOUSANDS.into_iter().find(|factor| is_about(ratio, *factor));
     let factor = factor.or_else(|| near_unit(input.unit, ratio, &positions, &tips(1.0)))?;
     let message = || position_message(input, measured, as_read, factor);
-    (as_read > smallest).then(|| Doubt::new(DoubtPlace::Head(x), message()))
+    (as_read > smallest).then(|| InputDoubt::new(DoubtLocation::Head(x), message()))
 }
 
 /// Instrument and target of a row, if the model states their poses.
@@ -146,14 +146,14 @@ fn angle_message(input: &ReadColumn<'_>, measured: f64, modelled: f64) -> String
         "found joint angles of at most {FULL_TURN_AS_DEGREES} deg that move the model's tip by {} mm where the positions \
          spread over {} mm, expected about the same: most likely they are in rad, not deg; write `{}[rad]` in the header \
          (and so for each joint), or the unit in the mapping",
-        short(1e3 * modelled),
-        short(1e3 * measured),
+        format_short(1e3 * modelled),
+        format_short(1e3 * measured),
         input.name
     )
 }
 
 /// Name of a unit in a message.
-fn spoken(symbol: &str) -> &str {
+fn spoken_unit(symbol: &str) -> &str {
     if symbol == "in" { "inches" } else { symbol }
 }
 
@@ -162,7 +162,7 @@ fn position_message(input: &ReadColumn<'_>, measured: f64, modelled: f64, factor
     let stated = input.unit;
     let model = format!(
         "the model's lengths are {} times too {}",
-        short(factor.max(1.0 / factor)),
+        format_short(factor.max(1.0 / factor)),
         if factor > 1.0 { "small" } else { "large" }
     );
     let likely = units_of(Unit::Metre)
@@ -172,16 +172,16 @@ fn position_message(input: &ReadColumn<'_>, measured: f64, modelled: f64, factor
         Some(likely) => format!(
             "most likely they are in {}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
              header, or the unit in the mapping",
-            spoken(likely),
-            spoken(stated.symbol())
+            spoken_unit(likely),
+            spoken_unit(stated.symbol())
         ),
         None => format!("most likely {model}; correct its unit, or the unit of the positions"),
     };
     format!(
         "found positions that spread over {} {stated} where the model moves its tip by {} {stated}, expected about the \
          same: {advice}",
-        short(stated.from_si(measured)),
-        short(stated.from_si(modelled)),
+        format_short(stated.from_si(measured)),
+        format_short(stated.from_si(modelled)),
         stated = stated.symbol(),
     )
 }

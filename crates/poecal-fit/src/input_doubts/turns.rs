@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{Doubt, DoubtPlace, SHARE};
+use super::{DoubtLocation, InputDoubt, SHARE};
 
 /// Rounding allowed beyond a full turn, radians.
 const ROUNDING: f64 = 1e-3;
@@ -13,13 +13,13 @@ pub struct TurnWatch {
     rows: usize,
     beyond: usize,
     largest: f64,
-    first: Option<First>,
+    first: Option<FirstLargeAngle>,
 }
 
 /// The first orientation with too large an angle.
 #[derive(Clone, Debug)]
-struct First {
-    place: DoubtPlace,
+struct FirstLargeAngle {
+    place: DoubtLocation,
     columns: Vec<String>,
     is_vector: bool,
     most: f64,
@@ -31,7 +31,7 @@ impl TurnWatch {
         &mut self,
         values: [f64; 3],
         is_vector: bool,
-        place: impl FnOnce() -> (DoubtPlace, Vec<String>),
+        place: impl FnOnce() -> (DoubtLocation, Vec<String>),
     ) {
         self.rows += 1;
         // Angles that count on over many turns are in no other unit.
@@ -47,13 +47,13 @@ impl TurnWatch {
         self.largest = self.largest.max(size);
         self.first.get_or_insert_with(|| {
             let (place, columns) = place();
-            First { place, columns, is_vector, most }
+            FirstLargeAngle { place, columns, is_vector, most }
         });
     }
 
     /// Doubt if only degrees explain the angles.
     #[must_use]
-    pub fn doubt(&self) -> Option<Doubt> {
+    pub fn doubt(&self) -> Option<InputDoubt> {
         let first = self.first.as_ref()?;
         // Degrees of one or two turns; larger angles are neither.
         if (self.beyond as f64) < SHARE * self.rows as f64 || self.largest > (2.0 * TAU).to_degrees() {
@@ -72,6 +72,6 @@ impl TurnWatch {
             first.most,
             degrees.join(", ")
         );
-        Some(Doubt::new(first.place, message))
+        Some(InputDoubt::new(first.place, message))
     }
 }

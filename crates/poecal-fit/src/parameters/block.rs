@@ -3,7 +3,7 @@
 use crate::state::{ClockTerm, RangeTerm};
 use poecal_model::robot::{MEASURED, Term};
 
-use super::{Parameter, Subject};
+use super::{Parameter, ParameterSubject};
 
 /// A block of unknowns, which a fit changes or holds as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub enum Block {
 
 /// Names of joints, targets and instruments, from which blocks and unknowns derive theirs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Names {
+pub struct BlockNames {
     /// Joints.
     pub joints: Vec<String>,
     /// Targets; the only one may have no name.
@@ -33,12 +33,12 @@ pub struct Names {
     pub stations: Vec<Option<String>>,
 }
 
-impl Names {
+impl BlockNames {
     /// All blocks: of each joint the axis and its terms, then the targets, the frames, the terms of ranges, and the clocks.
     #[must_use]
     pub fn blocks(&self) -> Vec<Block> {
         let joints = (0..self.joints.len()).flat_map(|joint| {
-            let terms = Term::plain().map(move |term| Block::Term(joint, term));
+            let terms = Term::unnumbered().map(move |term| Block::Term(joint, term));
             std::iter::once(Block::Axis(joint)).chain(terms)
         });
         let targets = (0..self.targets.len()).map(Block::Target);
@@ -87,15 +87,15 @@ impl Parameter {
     #[must_use]
     pub fn block(&self) -> Block {
         match (self.model().subject(), self.value_term()) {
-            (Subject::Joint(joint), Some(term)) => Block::Term(joint, term.term),
-            (Subject::Joint(joint), None) => Block::Axis(joint),
-            (Subject::Target(target), _) => Block::Target(target),
-            (Subject::Instrument(station), _) => Block::Frame(station),
-            (Subject::Clock(station), _) => {
+            (ParameterSubject::Joint(joint), Some(term)) => Block::Term(joint, term.term),
+            (ParameterSubject::Joint(joint), None) => Block::Axis(joint),
+            (ParameterSubject::Target(target), _) => Block::Target(target),
+            (ParameterSubject::Instrument(station), _) => Block::Frame(station),
+            (ParameterSubject::Clock(station), _) => {
                 let lag = ClockTerm::Lag;
                 Block::Clock(station, if let Parameter::ClockUnknown(it) = self { it.term } else { lag })
             }
-            (Subject::Range(station), _) => {
+            (ParameterSubject::Range(station), _) => {
                 let zero = RangeTerm::Zero;
                 Block::Range(station, if let Parameter::RangeUnknown(it) = self { it.term } else { zero })
             }
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn blocks_have_the_names_of_what_they_are_of() {
-        let names = Names {
+        let names = BlockNames {
             joints: vec!["elbow".to_owned()],
             targets: vec![None, Some("ball".to_owned()), Some(MEASURED.to_owned())],
             stations: vec![Some("left".to_owned())],

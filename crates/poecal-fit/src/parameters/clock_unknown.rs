@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject};
-use crate::state::{Chain, ClockTerm, Estimate};
+use super::columns::{Column, ParameterColumns, ParameterSubject};
+use crate::state::{ClockTerm, Estimate, RowChain};
 use poecal_arm::lie::TargetTwist;
 use poecal_model::robot::JointKind;
 use poecal_numerics::unit::Unit;
@@ -21,9 +21,9 @@ pub struct ClockUnknown {
 const LAG: [Column; 1] = [Column { name: "", unit: Unit::Second, shifts_only: false }];
 const DRIFT: [Column; 1] = [Column { name: "", unit: Unit::One, shifts_only: false }];
 
-impl Columns for ClockUnknown {
-    fn subject(&self) -> Subject {
-        Subject::Clock(self.station)
+impl ParameterColumns for ClockUnknown {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Clock(self.station)
     }
 
     fn columns(&self) -> &'static [Column] {
@@ -33,9 +33,9 @@ impl Columns for ClockUnknown {
         }
     }
 
-    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
         let mut twist = (Vector3::zeros(), Vector3::zeros());
-        if let Some((rates, time_s)) = chain.moving().filter(|_| chain.station == self.station) {
+        if let Some((rates, time_s)) = chain.motion_rates().filter(|_| chain.station == self.station) {
             let factor = self.term.factor(time_s);
             for view in &chain.joints {
                 let rate = factor * rates.get(view.joint).copied().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::state::{Chain, Estimate};
+use crate::state::{Estimate, RowChain};
 use poecal_arm::lie::{Freedom, TargetTwist};
 use poecal_numerics::unit::Unit;
 
@@ -82,7 +82,7 @@ pub struct Wrench {
 
 /// Subject of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
+pub enum ParameterSubject {
     /// The instrument (station) of this index.
     Instrument(usize),
     /// The joint of this index.
@@ -96,23 +96,23 @@ pub enum Subject {
 }
 
 /// Interface of a parameter with at most six unknowns: columns of the Jacobian, second derivatives, retraction.
-pub trait Columns {
+pub trait ParameterColumns {
     /// Subject of its unknowns.
-    fn subject(&self) -> Subject;
+    fn subject(&self) -> ParameterSubject;
 
     /// Unknowns in order.
     fn columns(&self) -> &'static [Column];
 
     /// Writes, for one row, the target twist per unit of each unknown: translation of the target's origin and rotation, both in the
     /// device's axes (theory.md §4 (14)). `out` has one place for each unknown and is not cleared.
-    fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]);
+    fn target_twists(&self, chain: &RowChain, target: usize, out: &mut [TargetTwist]);
 
     /// Writes the second derivative of the target's motion by each pair of these unknowns, contracted with a wrench on the target:
     /// `out[a * dim + b] = f · ∂²p/∂a∂b + τ · ∂²r/∂a∂b` (theory.md §6 (31b)). Pairs with unknowns of other parameters follow from
     /// the twists alone. `out` is all zero before.
-    fn curvature(&self, _chain: &Chain, _wrench: &Wrench, _out: &mut [f64]) {}
+    fn curvature(&self, _chain: &RowChain, _wrench: &Wrench, _out: &mut [f64]) {}
 
-    /// True if [`Columns::curvature`] is implemented. Without it the solver does not use the full Hessian.
+    /// True if [`ParameterColumns::curvature`] is implemented. Without it the solver does not use the full Hessian.
     fn has_curvature(&self) -> bool {
         true
     }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Wrench, of_freedom};
-use crate::state::{Chain, Estimate};
+use super::columns::{Column, ParameterColumns, ParameterSubject, Wrench, of_freedom};
+use crate::state::{Estimate, RowChain};
 use poecal_arm::lie::{Freedom, TargetTwist, rotation};
 
 /// The device frame, stepped about the point `about` of that frame: the middle of the data, so that rotation and translation are nearly
@@ -28,7 +28,7 @@ impl DeviceFrame {
 
     /// Frame of a device whose measurements determine only these motions: the anchor of a wire, a plane that is touched.
     #[must_use]
-    pub fn showing(station: usize, freedom: Freedom) -> Self {
+    pub fn from_freedom(station: usize, freedom: Freedom) -> Self {
         DeviceFrame { station, about: Vector3::zeros(), freedom }
     }
 
@@ -41,16 +41,16 @@ impl DeviceFrame {
     }
 }
 
-impl Columns for DeviceFrame {
-    fn subject(&self) -> Subject {
-        Subject::Instrument(self.station)
+impl ParameterColumns for DeviceFrame {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Instrument(self.station)
     }
 
     fn columns(&self) -> &'static [Column] {
         of_freedom(self.freedom)
     }
 
-    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
         if chain.station != self.station {
             out.fill((Vector3::zeros(), Vector3::zeros()));
             return;
@@ -62,7 +62,7 @@ impl Columns for DeviceFrame {
         }
     }
 
-    fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
+    fn curvature(&self, chain: &RowChain, wrench: &Wrench, out: &mut [f64]) {
         if chain.station != self.station {
             return;
         }

@@ -15,9 +15,9 @@ mod target_frame;
 mod target_place;
 mod value_term;
 
-pub use block::{Block, Names};
+pub use block::{Block, BlockNames};
 pub use clock_unknown::ClockUnknown;
-pub use columns::{Column, Columns, Subject, Wrench};
+pub use columns::{Column, ParameterColumns, ParameterSubject, Wrench};
 pub use device_frame::DeviceFrame;
 pub use other_screw::{OtherScrew, ScrewModel};
 pub use poecal_numerics::unit::Unit;
@@ -30,7 +30,7 @@ pub use value_term::ValueTerm;
 use poecal_model::robot::JointKind;
 
 /// A group of unknowns. A list of parameters has the order of the chain: device frame, joints from base to tip, targets. A new parameter
-/// is one file with [`Columns`] and one variant here; the compiler lists the places that have to decide.
+/// is one file with [`ParameterColumns`] and one variant here; the compiler lists the places that have to decide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter {
     /// A joint's screw in the minimal basis: a revolute axis (4 unknowns), or a prismatic direction (2).
@@ -62,7 +62,7 @@ pub fn screw_axes(kinds: &[JointKind]) -> Vec<Parameter> {
 impl Parameter {
     /// Columns of this parameter.
     #[must_use]
-    pub fn model(&self) -> &dyn Columns {
+    pub fn model(&self) -> &dyn ParameterColumns {
         match self {
             Parameter::ScrewAxis(axis) => axis,
             Parameter::OtherScrew(screw) => screw,

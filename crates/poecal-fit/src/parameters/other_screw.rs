@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject};
-use crate::state::{Chain, Estimate, JointView};
+use super::columns::{Column, ParameterColumns, ParameterSubject};
+use crate::state::{Estimate, JointView, RowChain};
 use poecal_arm::lie::{Pose, TargetTwist};
 use poecal_model::robot::JointKind;
 
@@ -17,10 +17,10 @@ pub trait ScrewModel: Debug + Sync {
     /// Unknowns of a joint of this kind, at most six.
     fn columns(&self, kind: JointKind) -> &'static [Column];
 
-    /// Target twist per unit of each unknown, as in [`Columns::target_twists`].
-    fn target_twists(&self, joint: &JointView, chain: &Chain, out: &mut [TargetTwist]);
+    /// Target twist per unit of each unknown, as in [`ParameterColumns::target_twists`].
+    fn target_twists(&self, joint: &JointView, chain: &RowChain, out: &mut [TargetTwist]);
 
-    /// Projection of a step, as in [`Columns::project_constraints`].
+    /// Projection of a step, as in [`ParameterColumns::project_constraints`].
     fn project_constraints(&self, kind: JointKind, step: &mut [f64]);
 
     /// `base_from_axis` after a step (metres, radians).
@@ -45,16 +45,16 @@ impl PartialEq for OtherScrew {
     }
 }
 
-impl Columns for OtherScrew {
-    fn subject(&self) -> Subject {
-        Subject::Joint(self.joint)
+impl ParameterColumns for OtherScrew {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Joint(self.joint)
     }
 
     fn columns(&self) -> &'static [Column] {
         self.model.columns(self.kind)
     }
 
-    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
         let mut own = [(Vector3::zeros(), Vector3::zeros()); 6];
         out.fill((Vector3::zeros(), Vector3::zeros()));
         for joint in chain.of_joint(self.joint) {

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject};
-use crate::state::{Chain, Estimate, Range, RangeTerm};
+use super::columns::{Column, ParameterColumns, ParameterSubject};
+use crate::state::{Estimate, RangeModel, RangeTerm, RowChain};
 use poecal_arm::lie::TargetTwist;
 use poecal_numerics::unit::Unit;
 
@@ -20,9 +20,9 @@ pub struct RangeUnknown {
 const ZERO: [Column; 1] = [Column::shift("")];
 const SCALE: [Column; 1] = [Column { name: "", unit: Unit::One, shifts_only: true }];
 
-impl Columns for RangeUnknown {
-    fn subject(&self) -> Subject {
-        Subject::Range(self.station)
+impl ParameterColumns for RangeUnknown {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Range(self.station)
     }
 
     fn columns(&self) -> &'static [Column] {
@@ -32,9 +32,9 @@ impl Columns for RangeUnknown {
         }
     }
 
-    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
         let moved = if chain.station == self.station {
-            Range::motion(&chain.target, self.term)
+            RangeModel::motion(&chain.target, self.term)
         } else {
             Vector3::zeros()
         };

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Wrench};
-use crate::state::{Chain, Estimate};
+use super::columns::{Column, ParameterColumns, ParameterSubject, Wrench};
+use crate::state::{Estimate, RowChain};
 use poecal_arm::lie::{Pose, TargetTwist, Twist};
 use poecal_model::robot::JointKind;
 
@@ -25,9 +25,9 @@ pub struct ScrewAxis {
 const TURNED: [Column; 4] = [Column::shift("x"), Column::shift("y"), Column::turn("rx"), Column::turn("ry")];
 const SLID: [Column; 2] = [Column::direction("rx"), Column::direction("ry")];
 
-impl Columns for ScrewAxis {
-    fn subject(&self) -> Subject {
-        Subject::Joint(self.joint)
+impl ParameterColumns for ScrewAxis {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Joint(self.joint)
     }
 
     fn columns(&self) -> &'static [Column] {
@@ -37,7 +37,7 @@ impl Columns for ScrewAxis {
         }
     }
 
-    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
         out.fill((Vector3::zeros(), Vector3::zeros()));
         let mut add = |k: usize, (moved, turned): TargetTwist| {
             out[k].0 += moved;
@@ -63,7 +63,7 @@ impl Columns for ScrewAxis {
         }
     }
 
-    fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
+    fn curvature(&self, chain: &RowChain, wrench: &Wrench, out: &mut [f64]) {
         let Some(joint) = chain.of_joint(self.joint).next() else { return };
         let arm = chain.target.translation - joint.origin;
         let (turned_x, turned_y) = match self.kind {

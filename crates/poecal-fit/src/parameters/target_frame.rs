@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, of_freedom};
-use crate::state::{Chain, Estimate};
+use super::columns::{Column, ParameterColumns, ParameterSubject, of_freedom};
+use crate::state::{Estimate, RowChain};
 use poecal_arm::lie::{Freedom, TargetTwist, rotation};
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
@@ -24,16 +24,16 @@ impl TargetFrame {
     }
 }
 
-impl Columns for TargetFrame {
-    fn subject(&self) -> Subject {
-        Subject::Target(self.target)
+impl ParameterColumns for TargetFrame {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Target(self.target)
     }
 
     fn columns(&self) -> &'static [Column] {
         of_freedom(self.freedom)
     }
 
-    fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, target: usize, out: &mut [TargetTwist]) {
         let zero = Vector3::zeros();
         for (out, &motion) in out.iter_mut().zip(self.freedom.motions()) {
             let own = if target == self.target {

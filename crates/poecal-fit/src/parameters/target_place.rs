@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, of_freedom};
-use crate::state::{Chain, Estimate};
+use super::columns::{Column, ParameterColumns, ParameterSubject, of_freedom};
+use crate::state::{Estimate, RowChain};
 use poecal_arm::lie::{Freedom, TargetTwist};
 
 /// The point `P_c0` of lou2009 (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)` (theory.md §5 (23)).
@@ -13,16 +13,16 @@ pub struct TargetPlace {
     pub target: usize,
 }
 
-impl Columns for TargetPlace {
-    fn subject(&self) -> Subject {
-        Subject::Target(self.target)
+impl ParameterColumns for TargetPlace {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Target(self.target)
     }
 
     fn columns(&self) -> &'static [Column] {
         of_freedom(Freedom::PLACE)
     }
 
-    fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, target: usize, out: &mut [TargetTwist]) {
         for (k, twist) in out.iter_mut().enumerate() {
             *twist = if target == self.target {
                 (chain.target.rotation.column(k).into_owned(), Vector3::zeros())

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject};
-use crate::state::{Chain, Estimate};
+use super::columns::{Column, ParameterColumns, ParameterSubject};
+use crate::state::{Estimate, RowChain};
 use poecal_arm::lie::TargetTwist;
 use poecal_model::robot::{JointKind, Term};
 use poecal_numerics::unit::Unit;
@@ -21,9 +21,9 @@ pub struct ValueTerm {
     pub term: Term,
 }
 
-impl Columns for ValueTerm {
-    fn subject(&self) -> Subject {
-        Subject::Joint(self.joint)
+impl ParameterColumns for ValueTerm {
+    fn subject(&self) -> ParameterSubject {
+        ParameterSubject::Joint(self.joint)
     }
 
     fn columns(&self) -> &'static [Column] {
@@ -41,7 +41,7 @@ impl Columns for ValueTerm {
         }
     }
 
-    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+    fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
         out[0] = (Vector3::zeros(), Vector3::zeros());
         for view in chain.of_joint(self.joint) {
             let basis = chain.basis(view, self.term);

@@ -4,13 +4,13 @@
 use nalgebra::{DVector, Matrix6, Vector6};
 
 use super::Layout;
-use super::bundle_desk::{Desk, MOST_COLUMNS, PointMotions, add_points, add_products, shared_root};
+use super::bundle_desk::{BundleScratch, MOST_COLUMNS, PointMotions, add_points, add_products, shared_root};
 use crate::parameters::Parameter;
 use crate::state::{Estimate, Linkage, Session};
 use poecal_arm::lie::Pose;
 use poecal_model::camera::{Board, Camera, CommonError, Distortion, Picture, PictureUnknowns};
-use poecal_numerics::kernels::{self as lanes, Brown, FixedMotion, MOTIONS, SimdLevel};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::kernels::{self as lanes, BrownConrady, FixedMotion, MOTIONS, SimdLevel};
+use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::threads;
 
 /// Pictures of one partial sum. Fixed, so that the result does not depend on the number of threads.
@@ -20,8 +20,8 @@ const CHUNK: usize = 128;
 const UNSEEN: f64 = 1e4;
 
 /// Cameras and boards of one pass, as the kernel needs them.
-struct Scene {
-    lenses: Vec<Brown>,
+struct BundleScene {
+    lenses: Vec<BrownConrady>,
     boards: Vec<Board>,
 }
 
@@ -58,7 +58,7 @@ impl<'a> Bundle<'a> {
             by_points: (0..pictures.boards.len()).map(|board| numbers.by_points(board)).collect(),
             of_lenses: (0..pictures.cameras.len()).map(|it| numbers.of_lens(it).collect()).collect(),
             common: pictures.common,
-            level: SimdLevel::best(),
+            level: SimdLevel::best_level(),
             session,
             numbers,
         })
@@ -78,25 +78,25 @@ impl<'a> Bundle<'a> {
 
     /// Normal information of all corners and of the numbers' prior: of the robot's unknowns, then of the numbers.
     #[must_use]
-    pub fn normal(&self, estimate: &Estimate, numbers: &DVector<f64>) -> Normal {
-        let (cameras, boards) = self.numbers.at(numbers);
-        let lens = |(camera, lens): (&Camera, &Vec<_>)| Brown {
+    pub fn normal(&self, estimate: &Estimate, numbers: &DVector<f64>) -> NormalEquations {
+        let (cameras, boards) = self.numbers.apply_step(numbers);
+        let lens = |(camera, lens): (&Camera, &Vec<_>)| BrownConrady {
             numbers: camera.lens.numbers(),
             unknown: lens.len(),
             turn: camera.lens.turn(),
         };
-        let scene = Scene { lenses: cameras.iter().zip(&self.of_lenses).map(lens).collect(), boards };
+        let scene = BundleScene { lenses: cameras.iter().zip(&self.of_lenses).map(lens).collect(), boards };
         let linkage = Linkage::new(estimate);
         let robot = self.layout.dim();
         let n = robot + numbers.len();
         let parts = threads::map_chunks(&self.pictures, CHUNK, |_, pictures| {
-            let mut sums = Normal::new(n);
-            let mut desk = Desk::new(robot, n, scene.lenses.len());
+            let mut sums = NormalEquations::new(n);
+            let mut desk = BundleScratch::new(robot, n, scene.lenses.len());
             pictures.iter().for_each(|at| self.add(*at, (&scene, &linkage), &mut desk, &mut sums));
             self.add_lens_points(&desk.points, &mut sums);
             sums
         });
-        let mut total = Normal::new(n);
+        let mut total = NormalEquations::new(n);
         parts.iter().for_each(|part| total.add(part));
         for (k, value) in numbers.iter().enumerate() {
             total.gram[(robot + k) * (n + 1)] += 1.0;
@@ -110,7 +110,13 @@ impl<'a> Bundle<'a> {
 
 impl Bundle<'_> {
     /// Adds the corners of one picture.
-    fn add(&self, at: usize, (scene, linkage): (&Scene, &Linkage), desk: &mut Desk, sums: &mut Normal) {
+    fn add(
+        &self,
+        at: usize,
+        (scene, linkage): (&BundleScene, &Linkage),
+        desk: &mut BundleScratch,
+        sums: &mut NormalEquations,
+    ) {
         let data = self.session.data;
         let picture = &data.pictures.all[at];
         let row = picture.row as usize;
@@ -118,10 +124,10 @@ impl Bundle<'_> {
         let lens = scene.lenses.get(picture.camera);
         let Some((lens, board)) = lens.zip(scene.boards.get(picture.board)) else { return };
         desk.chain.evaluate(linkage, self.session.packed, row, observation);
-        let pose = picture.directed(&desk.chain.target);
+        let pose = picture.directed_measurement(&desk.chain.target);
         desk.pack(picture, board, data.pictures.sigma_px);
         let has_points = self.by_points.get(picture.board).is_some_and(|it| !it.is_empty());
-        let Desk { corners, products, .. } = desk;
+        let BundleScratch { corners, products, .. } = desk;
         let motion = FixedMotion::from(&pose);
         lanes::corner_products(self.level, lens, &motion, corners, has_points, products);
         self.layout.target_twists(&desk.chain, observation.target, &mut desk.twists);
@@ -132,10 +138,10 @@ impl Bundle<'_> {
     }
 
     /// Adds the products of the numbers of camera and board among themselves, and writes those with the motions of the board.
-    fn weigh(&self, picture: &Picture, desk: &mut Desk, sums: &mut Normal) {
+    fn weigh(&self, picture: &Picture, desk: &mut BundleScratch, sums: &mut NormalEquations) {
         let robot = self.layout.dim();
         let n = sums.gradient.len();
-        let Desk { products, weighed, points, .. } = desk;
+        let BundleScratch { products, weighed, points, .. } = desk;
         weighed.fill(0.0);
         let last = products.columns() - 1;
         let lens = self.of_lenses.get(picture.camera).map_or(&[][..], Vec::as_slice);
@@ -157,7 +163,7 @@ impl Bundle<'_> {
     }
 
     /// Adds the products of lenses with points that were summed over pictures.
-    fn add_lens_points(&self, points: &[Vec<[f64; MOST_COLUMNS]>], sums: &mut Normal) {
+    fn add_lens_points(&self, points: &[Vec<[f64; MOST_COLUMNS]>], sums: &mut NormalEquations) {
         let robot = self.layout.dim();
         let n = sums.gradient.len();
         for (points, lens) in points.iter().zip(&self.of_lenses) {
@@ -174,11 +180,11 @@ impl Bundle<'_> {
 
     /// Adds the parts that depend on the motions of the board, without the shared error of the corners:
     /// `[J|I]ᵀ (H - H S H) [J|I]` with `S = (H + Q⁻¹)⁻¹`, and likewise the products with the numbers.
-    fn eliminate(&self, camera_from_board: &Pose, desk: &mut Desk, sums: &mut Normal) {
+    fn eliminate(&self, camera_from_board: &Pose, desk: &mut BundleScratch, sums: &mut NormalEquations) {
         let robot = self.layout.dim();
         let n = sums.gradient.len();
         let (information, mut pull) = desk.of_motions();
-        let Desk { products, motions, weighed, .. } = desk;
+        let BundleScratch { products, motions, weighed, .. } = desk;
         let last = products.columns() - 1;
         sums.cost += 0.5 * (products.product(last, last) + products.unseen * UNSEEN * UNSEEN);
         for k in 0..MOTIONS {
@@ -205,7 +211,7 @@ impl Bundle<'_> {
         (root, information): (&Matrix6<f64>, &Matrix6<f64>),
         pull: &mut Vector6<f64>,
         (weighed, n): (&mut [f64], usize),
-        sums: &mut Normal,
+        sums: &mut NormalEquations,
     ) {
         let robot = self.layout.dim();
         let explained = root * *pull;

@@ -2,12 +2,12 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use crate::state::Chain;
+use crate::state::RowChain;
 use poecal_arm::lie::Pose;
 use poecal_model::camera::{Board, Centre, CommonError, LENS_NUMBERS, Picture, motion_by_inverse};
-use poecal_numerics::kernels::{CornerProducts, Corners, MOTIONS, WIDTH, Wide};
+use poecal_numerics::kernels::{CornerProducts, Corners, LaneBlock, MOTIONS, WIDTH};
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Motions, numbers of the lens, and the residual.
 pub(crate) const MOST_COLUMNS: usize = MOTIONS + LENS_NUMBERS + 1;
@@ -16,8 +16,8 @@ pub(crate) const MOST_COLUMNS: usize = MOTIONS + LENS_NUMBERS + 1;
 pub(crate) type PointMotions = Vec<(usize, Vector3<f64>)>;
 
 /// Buffers of one thread.
-pub(crate) struct Desk {
-    pub(crate) chain: Chain,
+pub(crate) struct BundleScratch {
+    pub(crate) chain: RowChain,
     pub(crate) twists: Vec<(Vector3<f64>, Vector3<f64>)>,
     pub(crate) corners: Vec<Corners>,
     pub(crate) products: CornerProducts,
@@ -29,11 +29,11 @@ pub(crate) struct Desk {
     pub(crate) points: Vec<Vec<[f64; MOST_COLUMNS]>>,
 }
 
-impl Desk {
+impl BundleScratch {
     /// Buffers for numbers of unknowns of a robot, of all unknowns, and of cameras.
     pub(crate) fn new(robot: usize, all: usize, cameras: usize) -> Self {
-        Desk {
-            chain: Chain::default(),
+        BundleScratch {
+            chain: RowChain::default(),
             twists: vec![(Vector3::zeros(), Vector3::zeros()); robot],
             corners: Vec::new(),
             products: CornerProducts::default(),
@@ -47,7 +47,7 @@ impl Desk {
     pub(crate) fn pack(&mut self, picture: &Picture, board: &Board, sigma_px: f64) {
         self.corners.resize(picture.corners.len().div_ceil(WIDTH), Corners::NONE);
         if let Some(last) = self.corners.last_mut() {
-            last.root = Wide::ZERO;
+            last.root = LaneBlock::ZERO;
         }
         for (at, corner) in picture.corners.iter().enumerate() {
             let (block, lane) = (&mut self.corners[at / WIDTH], at % WIDTH);
@@ -105,7 +105,7 @@ pub(crate) fn add_points(
     picture: &Picture,
     products: &CornerProducts,
     (weighed, points): (&mut [f64], &mut [[f64; MOST_COLUMNS]]),
-    (sums, robot): (&mut Normal, usize),
+    (sums, robot): (&mut NormalEquations, usize),
 ) {
     let n = sums.gradient.len();
     let (of_corner, used) = (products.of_corner(), products.columns());
@@ -148,7 +148,7 @@ pub(crate) fn add_products(
     (motions, robot): (&[f64], usize),
     (weighed, n): (&[f64], usize),
     pull: &Vector6<f64>,
-    sums: &mut Normal,
+    sums: &mut NormalEquations,
 ) {
     let mut rows = weighed.chunks_exact(n);
     let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = std::array::from_fn(|_| rows.next()) else {
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use poecal_arm::lie::hat;
     use poecal_model::camera::{Distortion, Lens};
-    use poecal_numerics::kernels::{Brown, FixedMotion, corner_products, simd_levels};
+    use poecal_numerics::kernels::{BrownConrady, FixedMotion, corner_products, simd_levels};
 
     /// The products of a picture by every level of instructions beside those of the corners one by one.
     #[test]
@@ -182,7 +182,7 @@ mod tests {
             distortion: Distortion::Brown([-0.18, 0.04, 1e-3, -7e-4, -0.01, 0.02, -0.01, 0.003]),
             ..Lens::pinhole([1510.0, 1490.0], [960.0, 610.0])
         };
-        let brown = Brown { numbers: lens.numbers(), unknown: 12, turn: 4.0 };
+        let brown = BrownConrady { numbers: lens.numbers(), unknown: 12, turn: 4.0 };
         let pose = Pose::from_xyz_rpy([-0.1, 0.05, 0.7], [0.5, -0.3, 0.2]);
         // Two blocks, of which the last is padded; one point is behind the camera.
         let count = 13;

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::bundle::Bundle;
 use crate::state::Estimate;
 use poecal_numerics::kernels as lanes;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Largest number of steps.
 const STEPS: usize = 30;
@@ -16,7 +16,7 @@ const DAMPING: f64 = 1e-9;
 
 /// Optimum of a bundle.
 #[derive(Clone, Debug)]
-pub struct Bundled {
+pub struct BundleOptimum {
     /// Robot, and poses of cameras and boards.
     pub estimate: Estimate,
     /// Unknown numbers of cameras and boards, in standard deviations of their prior.
@@ -30,7 +30,7 @@ pub struct Bundled {
 impl Bundle<'_> {
     /// Optimum from a start.
     #[must_use]
-    pub fn solve(&self, start: &Estimate, numbers: &DVector<f64>) -> Bundled {
+    pub fn solve(&self, start: &Estimate, numbers: &DVector<f64>) -> BundleOptimum {
         let (mut estimate, mut numbers) = (start.clone(), numbers.clone());
         let mut sums = self.normal(&estimate, &numbers);
         let (mut damping, mut passes) = (DAMPING, 1);
@@ -44,7 +44,12 @@ impl Bundle<'_> {
             let next = self.layout.retract(&estimate, &step[..robot]);
             let next_numbers = &numbers + DVector::from_column_slice(&step[robot..]);
             if fall <= SETTLED * sums.cost {
-                return Bundled { estimate: next, numbers: next_numbers, cost: sums.cost - fall, passes };
+                return BundleOptimum {
+                    estimate: next,
+                    numbers: next_numbers,
+                    cost: sums.cost - fall,
+                    passes,
+                };
             }
             let found = self.normal(&next, &next_numbers);
             passes += 1;
@@ -55,11 +60,11 @@ impl Bundle<'_> {
                 damping = (damping * 100.0).max(1e-4);
             }
         }
-        Bundled { estimate, numbers, cost: sums.cost, passes }
+        BundleOptimum { estimate, numbers, cost: sums.cost, passes }
     }
 
     /// Gauss-Newton step with a damping of the diagonal; `None` if the damped matrix is singular.
-    fn step(&self, sums: &Normal, damping: f64) -> Option<Vec<f64>> {
+    fn step(&self, sums: &NormalEquations, damping: f64) -> Option<Vec<f64>> {
         let n = sums.gradient.len();
         let mut gram = sums.gram.clone();
         let least = 1e-12 * (0..self.layout.dim()).map(|k| gram[k * n + k]).fold(0.0, f64::max);

@@ -1,22 +1,23 @@
 //! Columns of one group of rows: the unknowns that move its target, in the order of the kernels.
 
-use super::arranged::{ColumnMap, Place, ValueFactor};
-use super::form::Form;
+use super::form::RowForm;
+use super::kernel_columns::{KernelColumns, StepColumn, ValueFactor};
 use super::{Layout, Problem};
-use crate::parameters::{OtherScrew, Parameter, Subject};
-use crate::state::{ClockTerm, Estimate, Passed, Sight};
+use crate::parameters::{OtherScrew, Parameter, ParameterSubject};
+use crate::state::{ClockTerm, Estimate, PassedJoint, Sight};
 use poecal_arm::lie::Freedom;
 use poecal_model::robot::JointKind;
-use poecal_numerics::kernels::{Along, DevicePlan, JointPlan, Plan, TILE, TermPlan};
+use poecal_numerics::kernels::{DevicePlan, JointPlan, KernelPlan, PlaceComponent, TILE, TermPlan};
 
-impl ColumnMap {
+impl KernelColumns {
     /// Columns for rows of one sight and form. If two parameters belong to one frame, axis or target, the first counts.
-    pub(crate) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Self {
+    pub(crate) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: RowForm) -> Self {
         // An instrument's known zero is not in the kernels.
-        let is_plain = form != Form::Along(Along::Distance) || state.range(sight.station).is_plain();
-        let form = if is_plain { form } else { form.shaped() };
+        let is_plain =
+            form != RowForm::Along(PlaceComponent::Distance) || state.range(sight.station).is_plain();
+        let form = if is_plain { form } else { form.general() };
         let unknowns = problem.layout.dim();
-        let mut made = ColumnMap {
+        let mut made = KernelColumns {
             sight,
             form,
             plan: plan_without_unknowns(problem, state, sight, form),
@@ -28,7 +29,7 @@ impl ColumnMap {
             terms: Vec::new(),
         };
         // The kernels' order: device frame, joints, target.
-        made.add_device(&problem.layout, state.tree.shared(sight.station));
+        made.add_device(&problem.layout, state.tree.shared_target(sight.station));
         made.add_joints(&problem.layout, state.tree.route(sight));
         made.plan.tilts = made.turn_places.len();
         made.add_target(&problem.layout);
@@ -43,17 +44,17 @@ impl ColumnMap {
         if self.shift_places.iter().all(|place| place.is_unknown()) {
             return Vec::new();
         }
-        let places: Vec<Place> = self.places().take(self.plan.columns()).collect();
+        let places: Vec<StepColumn> = self.places().take(self.plan.columns()).collect();
         places.chunks(TILE).map(|tile| !tile.iter().any(|place| place.is_unknown())).collect()
     }
 
     /// Places of the plan's columns in a step: translation columns, rotation columns, supplied ones.
-    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
+    pub(crate) fn places(&self) -> impl Iterator<Item = StepColumn> {
         self.shift_places.iter().chain(&self.turn_places).chain(&self.given_places).copied()
     }
 
     /// Places of the rotation columns.
-    pub(crate) fn turn_places(&self) -> &[Place] {
+    pub(crate) fn turn_places(&self) -> &[StepColumn] {
         &self.turn_places
     }
 
@@ -72,7 +73,8 @@ impl ColumnMap {
     /// Adds translation columns of a frame, and rotation columns about their directions if it turns.
     fn add_frame(&mut self, places: [Option<(usize, f64)>; 6], turns: bool, sign: f64) {
         let first = self.shift_places.len();
-        let of = |place: Option<(usize, f64)>| place.map_or(Place::NONE, |(at, _)| Place { at, sign });
+        let of =
+            |place: Option<(usize, f64)>| place.map_or(StepColumn::NONE, |(at, _)| StepColumn { at, sign });
         let [shifts @ .., a, b, c] = places;
         self.shift_places.extend(shifts.map(of));
         if turns {
@@ -82,18 +84,19 @@ impl ColumnMap {
     }
 
     fn shift(&mut self, places: &[(usize, f64)], sign: f64) {
-        self.shift_places.extend(places.iter().map(|&(at, _)| Place { at, sign }));
+        self.shift_places.extend(places.iter().map(|&(at, _)| StepColumn { at, sign }));
     }
 
     /// Adds rotation columns about the directions of the translation columns from `first` on.
     fn turn(&mut self, places: &[(usize, f64)], first: usize, sign: f64) {
-        self.turn_places.extend(places.iter().map(|&(at, _)| Place { at, sign }));
+        self.turn_places.extend(places.iter().map(|&(at, _)| StepColumn { at, sign }));
         self.plan.turns.extend(first..first + places.len());
     }
 
     /// Columns of the device's frame, or of the target that carries it: a step of that target moves the base in the opposite direction.
     fn add_device(&mut self, layout: &Layout, shared: Option<usize>) {
-        let subject = shared.map_or(Subject::Instrument(self.sight.station), Subject::Target);
+        let subject =
+            shared.map_or(ParameterSubject::Instrument(self.sight.station), ParameterSubject::Target);
         for (parameter, places) in layout.parameters() {
             let model = parameter.model();
             if model.subject() != subject || self.plan.device.is_some() {
@@ -115,10 +118,10 @@ impl ColumnMap {
         }
     }
 
-    fn add_joints(&mut self, layout: &Layout, route: &[Passed]) {
+    fn add_joints(&mut self, layout: &Layout, route: &[PassedJoint]) {
         let mut of_joints: Vec<(usize, Unknown<'_>)> = Vec::with_capacity(layout.dim());
         for (parameter, places) in layout.parameters() {
-            if let Subject::Joint(joint) = parameter.model().subject() {
+            if let ParameterSubject::Joint(joint) = parameter.model().subject() {
                 of_joints.push((joint, (parameter, places)));
             }
         }
@@ -170,13 +173,13 @@ impl ColumnMap {
     /// Columns of a screw in another parameterisation, once whether its joint is passed once or twice.
     fn add_given(&mut self, screw: &OtherScrew, places: &[(usize, f64)]) {
         if !self.screws.iter().any(|(known, _)| known == screw) {
-            self.given_places.extend(places.iter().map(|&(at, _)| Place { at, sign: 1.0 }));
+            self.given_places.extend(places.iter().map(|&(at, _)| StepColumn { at, sign: 1.0 }));
             self.plan.given += places.len();
             self.screws.push((*screw, places.iter().map(|&(_, scale)| scale).collect()));
         }
     }
 
-    fn add_term(&mut self, index: usize, passed: Passed, factor: ValueFactor, places: &[(usize, f64)]) {
+    fn add_term(&mut self, index: usize, passed: PassedJoint, factor: ValueFactor, places: &[(usize, f64)]) {
         let shift = self.shift_places.len();
         let joint = &mut self.plan.joints[index];
         joint.terms.1 += 1;
@@ -187,7 +190,7 @@ impl ColumnMap {
         self.terms.extend(places.iter().map(|&(_, scale)| (passed, factor, own / scale)));
         if turn.is_some() {
             // Direction of the rotation, along which no unknown moves.
-            self.shift_places.push(Place::NONE);
+            self.shift_places.push(StepColumn::NONE);
             self.turn(places, shift, 1.0);
         } else {
             self.shift(places, 1.0);
@@ -199,7 +202,7 @@ impl ColumnMap {
         for (parameter, places) in layout.parameters() {
             let Parameter::RangeUnknown(range) = parameter else { continue };
             if range.station == self.sight.station && self.plan.shaped > 0 {
-                self.given_places.extend(places.iter().map(|&(at, _)| Place { at, sign: 1.0 }));
+                self.given_places.extend(places.iter().map(|&(at, _)| StepColumn { at, sign: 1.0 }));
                 self.ranges.extend(places.iter().map(|&(_, scale)| (range.term, scale)));
                 self.plan.given += places.len();
             }
@@ -208,7 +211,8 @@ impl ColumnMap {
 
     fn add_target(&mut self, layout: &Layout) {
         for (parameter, places) in layout.parameters() {
-            if parameter.model().subject() != Subject::Target(self.sight.target) || self.plan.place.is_some()
+            if parameter.model().subject() != ParameterSubject::Target(self.sight.target)
+                || self.plan.place.is_some()
             {
                 continue;
             }
@@ -235,14 +239,14 @@ impl ColumnMap {
 /// A parameter with the places of its unknowns.
 type Unknown<'a> = (&'a Parameter, &'a [(usize, f64)]);
 
-fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Plan {
+fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: RowForm) -> KernelPlan {
     let route = state.tree.route(sight);
     let joints = route.iter().map(|passed| JointPlan {
         terms: (0, 0),
         turns: state.kinds()[passed.joint] == JointKind::Revolute,
         columns: None,
     });
-    Plan {
+    KernelPlan {
         joints: joints.collect(),
         terms: Vec::new(),
         in_order: !state.moves_values()
@@ -260,10 +264,10 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
         given: 0,
         framed: form.sees_orientation(),
         shaped: match form {
-            Form::Point | Form::Pose | Form::Along(_) => 0,
-            Form::Shaped(numbers, _) => numbers,
+            RowForm::Point | RowForm::Pose | RowForm::Along(_) => 0,
+            RowForm::Shaped(numbers, _) => numbers,
         },
-        along: if let Form::Along(along) = form { Some(along) } else { None },
+        along: if let RowForm::Along(along) = form { Some(along) } else { None },
         ratio: None,
     }
 }

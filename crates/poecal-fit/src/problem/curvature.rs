@@ -1,13 +1,13 @@
 //! Second derivatives of a problem: along a step, and of the prediction under the residuals' wrench (theory.md §6 (31), (31a)).
 
-use super::groups::{Accumulate, Fast, SecondDifference};
+use super::groups::{Accumulate, FastRows, SecondDifference};
 use super::{Problem, ShapedRow};
 use crate::parameters::Wrench;
-use crate::state::{Chain, Estimate, Linkage, Range};
+use crate::state::{Estimate, Linkage, RangeModel, RowChain};
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::NUMBERS;
-use poecal_numerics::solve::{LeastSquares as _, Normal};
+use poecal_numerics::solve::{LeastSquares as _, NormalEquations};
 use poecal_numerics::threads;
 
 /// Rows of one partial sum. Fixed, so that the result does not depend on the number of threads.
@@ -26,16 +26,18 @@ impl Problem<'_> {
             Linkage::new(&self.retract(state, &part))
         };
         let second = SecondDifference { ahead: along(1.0), behind: along(-1.0), fraction: FRACTION };
-        Fast::shaped(self, state, second).normal(self, state, Accumulate::Gradient).gradient
+        FastRows::with_second_difference(self, state, second)
+            .normal(self, state, Accumulate::Gradient)
+            .gradient
     }
 
     /// The residual's second derivative along a step in place of a row's residual.
     pub(crate) fn second_difference(&self, row: usize, second: &SecondDifference, shaped: &mut ShapedRow) {
         let observation = &self.session.data.observations[row];
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         let mut at = |linkage: &Linkage| {
             chain.evaluate(linkage, self.session.packed, row, observation);
-            self.shaped(row, &chain.target, linkage.range(observation.station)).residual
+            self.shape_row(row, &chain.target, linkage.range(observation.station)).residual
         };
         let (ahead, behind) = (at(&second.ahead), at(&second.behind));
         for (e, (a, b)) in shaped.residual.iter_mut().zip(ahead.into_iter().zip(behind)) {
@@ -45,13 +47,13 @@ impl Problem<'_> {
 
     /// [`poecal_numerics::solve::LeastSquares::curvature`]: the C of theory.md §6 (31a).
     pub(crate) fn curvature_of(&self, state: &Estimate) -> Option<Vec<f64>> {
-        if !self.layout.has_curvature() || !state.ranges.iter().all(Range::is_plain) {
+        if !self.layout.has_curvature() || !state.ranges.iter().all(RangeModel::is_plain) {
             return None;
         }
         let linkage = Linkage::new(state);
         let total = self.sum_chunks(|rows| {
-            let mut normal = Normal::new(self.layout.dim());
-            let mut chain = Chain::default();
+            let mut normal = NormalEquations::new(self.layout.dim());
+            let mut chain = RowChain::default();
             for &row in rows {
                 let row = row as usize;
                 let observation = &self.session.data.observations[row];
@@ -71,7 +73,7 @@ impl Problem<'_> {
 
     /// The whitened residual of a row as force and torque on its target, `Sᵀ W e`, where the curvature is theirs (theory.md §6 (31a)).
     fn wrench(&self, row: usize, predicted: &Pose) -> Option<Wrench> {
-        let written = self.written(row);
+        let written = self.formulated_measurement(row);
         let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let (mut e, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
         written.residual(predicted, &mut e);
@@ -87,11 +89,11 @@ impl Problem<'_> {
     }
 
     /// Adds up `add` of each fixed chunk of rows, in the order of the rows whatever the number of threads.
-    fn sum_chunks(&self, add: impl Fn(&[u32]) -> Normal + Sync + Send) -> Normal {
+    fn sum_chunks(&self, add: impl Fn(&[u32]) -> NormalEquations + Sync + Send) -> NormalEquations {
         if self.rows.len() <= CHUNK {
             return add(&self.rows);
         }
-        let mut total = Normal::new(self.layout.dim());
+        let mut total = NormalEquations::new(self.layout.dim());
         for group in self.rows.chunks(CHUNK * GROUP) {
             let parts = threads::map_chunks(group, CHUNK, |_, rows| add(rows));
             parts.iter().for_each(|part| total.add(part));

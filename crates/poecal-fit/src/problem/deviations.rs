@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A nominal axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Nominal {
+pub(crate) struct NominalAxis {
     pub(crate) direction: Vector3<f64>,
     pub(crate) origin: Vector3<f64>,
     pub(crate) turns: bool,
@@ -36,18 +36,18 @@ pub(crate) struct TargetDeviation {
 }
 
 /// Derivatives of axes and targets by a motion of the base, a twist.
-type ByBase = (Vec<Matrix6<f64>>, Vec<Matrix3x6<f64>>);
+type BaseDerivatives = (Vec<Matrix6<f64>>, Vec<Matrix3x6<f64>>);
 
 /// Deviations, after the best motion of the base if that is free.
 pub(crate) struct Deviations {
-    pub(crate) axes: Vec<Deviation>,
+    pub(crate) axes: Vec<AxisDeviation>,
     pub(crate) targets: Vec<TargetDeviation>,
     /// Derivatives of both by a motion of the base; `None` if the base is held.
-    pub(crate) by_base: Option<ByBase>,
+    pub(crate) by_base: Option<BaseDerivatives>,
 }
 
 /// Deviation of an axis, tilts before shifts, each over its standard deviation, with the quantities of its derivatives.
-pub(crate) struct Deviation {
+pub(crate) struct AxisDeviation {
     pub(crate) value: Vector6<f64>,
     x: Vector3<f64>,
     y: Vector3<f64>,
@@ -62,12 +62,12 @@ pub(crate) struct Deviation {
 }
 
 /// Derivatives of a deviation by the motions of its axis: a shift changes the second half only.
-pub(crate) struct OwnMotions {
+pub(crate) struct AxisDerivatives {
     shifts: [Vector3<f64>; 2],
     turns: [Vector6<f64>; 2],
 }
 
-impl OwnMotions {
+impl AxisDerivatives {
     /// All motions as columns.
     pub(crate) fn columns(&self) -> [Vector6<f64>; 4] {
         let whole = |shift: Vector3<f64>| Vector6::new(0.0, 0.0, 0.0, shift.x, shift.y, shift.z);
@@ -88,7 +88,7 @@ impl OwnMotions {
 
     /// Product of a column with a deviation.
     #[inline]
-    pub(crate) fn along(&self, column: usize, value: &Vector6<f64>) -> f64 {
+    pub(crate) fn column_product(&self, column: usize, value: &Vector6<f64>) -> f64 {
         if column < 2 { self.along_shift(column, value) } else { self.turns[column - 2].dot(value) }
     }
 
@@ -99,21 +99,22 @@ impl OwnMotions {
     }
 }
 
-impl Deviation {
+impl AxisDeviation {
     /// Deviation of an axis with this `base_from_axis`.
-    pub(crate) fn new(nominal: &Nominal, frame: &Pose) -> Self {
+    pub(crate) fn new(nominal: &NominalAxis, frame: &Pose) -> Self {
         let [x, y, d] = [0, 1, 2].map(|k| frame.rotation.column(k).into_owned());
         let (tilt, shift) = (1.0 / nominal.tolerance.angle_rad, 1.0 / nominal.tolerance.length_m);
         let shift = if nominal.turns { shift } else { 0.0 };
         let along = d.dot(&(nominal.origin - frame.translation));
         let nearest = frame.translation + d * along;
         let missing = nominal.origin - nearest;
-        let mut made = Deviation { value: Vector6::zeros(), x, y, d, along, nearest, missing, tilt, shift };
-        made.value = made.both(d - nominal.direction, -missing);
+        let mut made =
+            AxisDeviation { value: Vector6::zeros(), x, y, d, along, nearest, missing, tilt, shift };
+        made.value = made.combine(d - nominal.direction, -missing);
         made
     }
 
-    fn both(&self, tilted: Vector3<f64>, shifted: Vector3<f64>) -> Vector6<f64> {
+    fn combine(&self, tilted: Vector3<f64>, shifted: Vector3<f64>) -> Vector6<f64> {
         let (a, b) = (tilted * self.tilt, shifted * self.shift);
         Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
     }
@@ -121,20 +122,20 @@ impl Deviation {
     /// A rotation moves the direction by `turned`, a point of the axis by `moved`, and the nearest point also along the axis.
     fn change(&self, turned: Vector3<f64>, moved: Vector3<f64>) -> Vector6<f64> {
         let d = self.d;
-        self.both(turned, moved - d * d.dot(&moved) + d * turned.dot(&self.missing))
+        self.combine(turned, moved - d * d.dot(&moved) + d * turned.dot(&self.missing))
     }
 
     /// A shift moves no direction.
-    fn shifted(&self, moved: Vector3<f64>) -> Vector6<f64> {
-        self.both(Vector3::zeros(), moved - self.d * self.d.dot(&moved))
+    fn shift_only(&self, moved: Vector3<f64>) -> Vector6<f64> {
+        self.combine(Vector3::zeros(), moved - self.d * self.d.dot(&moved))
     }
 
     /// Derivatives by shifts along x and y and rotations about x and y of the axis' own frame.
     #[inline]
-    pub(crate) fn own(&self) -> OwnMotions {
-        let Deviation { x, y, d, along, .. } = *self;
+    pub(crate) fn own_motions(&self) -> AxisDerivatives {
+        let AxisDeviation { x, y, d, along, .. } = *self;
         let shifted = |moved: Vector3<f64>| (moved - d * d.dot(&moved)) * self.shift;
-        OwnMotions {
+        AxisDerivatives {
             shifts: [shifted(x), shifted(y)],
             turns: [self.change(-y, -y * along), self.change(x, x * along)],
         }
@@ -145,7 +146,7 @@ impl Deviation {
         let mut base = Matrix6::zeros();
         for k in 0..3 {
             let unit = Vector3::ith(k, 1.0);
-            base.set_column(k, &self.shifted(unit));
+            base.set_column(k, &self.shift_only(unit));
             base.set_column(3 + k, &self.change(unit.cross(&self.d), unit.cross(&self.nearest)));
         }
         base

@@ -1,19 +1,20 @@
 //! The hot path: rows grouped by instrument, target and form, packed side by side, and summed by [`poecal_numerics::kernels`].
 
 use super::Problem;
-use super::arranged::{ColumnMap, ValueFactor};
-use super::groups::{Accumulate, Fast, Group, SecondDifference};
+use super::groups::{Accumulate, FastRows, KernelGroup, SecondDifference};
+use super::kernel_columns::{KernelColumns, ValueFactor};
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
-use crate::parameters::Columns as _;
-use crate::state::{Chain, Estimate, Linkage, Passed, Sight};
+use crate::parameters::ParameterColumns as _;
+use crate::state::{Estimate, Linkage, PassedJoint, RowChain, Sight};
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Kernel, NUMBERS, Noise};
 use poecal_numerics::kernels::{
-    self as lanes, Arm, FixedMotion, PackedRows, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH,
+    self as lanes, ArmAtEstimate, FixedMotion, PackedRows, PassTotals, RowFunctions, ShapedRow, SimdLevel,
+    UnpackedRow, WIDTH,
 };
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::threads;
 use std::cell::RefCell;
 
@@ -30,20 +31,24 @@ thread_local! {
     pub(crate) static ROWS: RefCell<PackedRows> = const { RefCell::new(PackedRows::EMPTY) };
 }
 
-impl Fast {
+impl FastRows {
     /// Groups the rows of a problem.
     pub(crate) fn new(problem: &Problem<'_>, state: &Estimate, level: SimdLevel) -> Self {
-        Fast::from_groups(problem, state, level, RowGroup::of_problem(problem), None)
+        FastRows::from_groups(problem, state, level, RowGroup::of_problem(problem), None)
     }
 
     /// The same groups for the second derivative of the residuals along a step, which replaces the residuals.
-    pub(crate) fn shaped(problem: &Problem<'_>, state: &Estimate, second: SecondDifference) -> Self {
+    pub(crate) fn with_second_difference(
+        problem: &Problem<'_>,
+        state: &Estimate,
+        second: SecondDifference,
+    ) -> Self {
         let mut groups = RowGroup::of_problem(problem);
         groups.iter_mut().for_each(|group| {
-            group.form = group.form.shaped();
+            group.form = group.form.general();
             group.ratio = None;
         });
-        Fast::from_groups(problem, state, problem.level, groups, Some(second))
+        FastRows::from_groups(problem, state, problem.level, groups, Some(second))
     }
 
     fn from_groups(
@@ -55,22 +60,24 @@ impl Fast {
     ) -> Self {
         let mut groups = Vec::new();
         for group in of_rows {
-            let mut arranged = ColumnMap::new(problem, state, group.sight, group.form);
+            let mut arranged = KernelColumns::new(problem, state, group.sight, group.form);
             arranged.plan.ratio = group.ratio;
             let keeps =
                 problem.rows.len() <= KEPT && !(state.moves_values() || problem.layout.moves_values());
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
-            groups.push((Group { arranged, rows: group.rows, keeps, packed: Vec::new() }, scatter));
+            groups.push((KernelGroup { arranged, rows: group.rows, keeps, packed: Vec::new() }, scatter));
         }
-        let mut fast = Fast { groups, level, linkage: Linkage::new(state), second };
+        let mut fast = FastRows { groups, level, linkage: Linkage::new(state), second };
         fast.pack(problem);
         fast
     }
 
     /// Packs the rows of small problems, unless joint values depend on the state.
     pub(crate) fn pack(&mut self, problem: &Problem<'_>) {
-        let Fast { groups, linkage, .. } = self;
-        for (Group { arranged, rows, packed, .. }, _) in groups.iter_mut().filter(|(group, _)| group.keeps) {
+        let FastRows { groups, linkage, .. } = self;
+        for (KernelGroup { arranged, rows, packed, .. }, _) in
+            groups.iter_mut().filter(|(group, _)| group.keeps)
+        {
             let size = chunk_size(rows.len());
             packed.resize_with(rows.len().div_ceil(size), PackedRows::default);
             for (rows, packed) in rows.chunks(size).zip(packed) {
@@ -80,18 +87,23 @@ impl Fast {
     }
 
     /// Normal information of all rows, theory.md §6 (28); without `JᵀJ` if only the gradient is needed.
-    pub(crate) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Accumulate) -> Normal {
+    pub(crate) fn normal(
+        &self,
+        problem: &Problem<'_>,
+        state: &Estimate,
+        sums: Accumulate,
+    ) -> NormalEquations {
         let linkage = Linkage::new(state);
         let mut normal = match sums {
-            Accumulate::Gradient => Normal::new(0),
-            Accumulate::All | Accumulate::GaussNewton => Normal::new(problem.layout.dim()),
+            Accumulate::Gradient => NormalEquations::new(0),
+            Accumulate::All | Accumulate::GaussNewton => NormalEquations::new(problem.layout.dim()),
         };
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
-            let ColumnMap { sight, plan, .. } = &group.arranged;
+            let KernelColumns { sight, plan, .. } = &group.arranged;
             let (steps, end) = fixed_motions(&linkage, *sight);
             let nearly = sums == Accumulate::GaussNewton;
-            let arm = Arm { plan, steps: &steps, end: &end, shape: None, nearly };
+            let arm = ArmAtEstimate { plan, steps: &steps, end: &end, shape: None, nearly };
             let totals = group.sum(problem, (&linkage, self.second.as_ref()), self.level, &arm, sums);
             group.put(&totals, &mut normal);
             if sums != Accumulate::Gradient {
@@ -102,16 +114,16 @@ impl Fast {
     }
 }
 
-impl Group {
+impl KernelGroup {
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
     fn sum(
         &self,
         problem: &Problem<'_>,
         (linkage, second): (&Linkage, Option<&SecondDifference>),
         level: SimdLevel,
-        arm: &Arm<'_>,
+        arm: &ArmAtEstimate<'_>,
         sums: Accumulate,
-    ) -> Totals {
+    ) -> PassTotals {
         let sum = match (sums, self.arranged.plan.is_plain()) {
             (Accumulate::Gradient, true) => lanes::sum_plain_gradient,
             (Accumulate::Gradient, false) => lanes::sum_gradient,
@@ -123,7 +135,7 @@ impl Group {
             let last = self.rows.len().min((index + 1) * size);
             let rows = &self.rows[index * size..last];
             let shapes = RowShapes { problem, linkage, second, arranged: &self.arranged, rows };
-            let arm = &Arm { shape: shapes.as_shape(), ..*arm };
+            let arm = &ArmAtEstimate { shape: shapes.as_shape(), ..*arm };
             match self.packed.get(index) {
                 Some(rows) => sum(level, arm, &rows.blocks),
                 None => {
@@ -139,7 +151,7 @@ impl Group {
         if chunks <= 1 {
             return chunk(0);
         }
-        let mut total: Option<Totals> = None;
+        let mut total: Option<PassTotals> = None;
         for first in (0..chunks).step_by(TOGETHER) {
             let together = first..chunks.min(first + TOGETHER);
             for part in threads::map_parts(together.len(), |index| chunk(first + index)) {
@@ -154,7 +166,7 @@ impl Group {
     }
 
     /// Adds cost and gradient of the group to the problem's normal information.
-    fn put(&self, totals: &Totals, normal: &mut Normal) {
+    fn put(&self, totals: &PassTotals, normal: &mut NormalEquations) {
         let places = self.arranged.places();
         for (value, place) in totals.gradient.iter().zip(places).filter(|(_, place)| place.is_unknown()) {
             normal.gradient[place.at] += place.sign * value;
@@ -169,20 +181,20 @@ pub(crate) struct RowShapes<'a> {
     pub(crate) problem: &'a Problem<'a>,
     pub(crate) linkage: &'a Linkage,
     pub(crate) second: Option<&'a SecondDifference>,
-    pub(crate) arranged: &'a ColumnMap,
+    pub(crate) arranged: &'a KernelColumns,
     pub(crate) rows: &'a [u32],
 }
 
 impl RowShapes<'_> {
     /// These shapes, if the plan needs them.
-    pub(crate) fn as_shape(&self) -> Option<&dyn Shape> {
+    pub(crate) fn as_shape(&self) -> Option<&dyn RowFunctions> {
         (self.arranged.plan.shaped > 0).then_some(self)
     }
 
     /// Whitened columns of screws in another parameterisation, by their own formulas.
     fn give(&self, row: usize, shaped: &ShapedRow, given: &mut [[f64; NUMBERS]]) {
         let session = self.problem.session;
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         chain.evaluate(self.linkage, session.packed, row, &session.data.observations[row]);
         let mut rest = given.iter_mut();
         for (screw, scales) in &self.arranged.screws {
@@ -197,11 +209,11 @@ impl RowShapes<'_> {
     }
 }
 
-impl Shape for RowShapes<'_> {
+impl RowFunctions for RowShapes<'_> {
     fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow {
         let Some(&row) = self.rows.get(place) else { return ShapedRow::NONE };
         let range = self.linkage.range(self.arranged.sight.station);
-        let mut shaped = self.problem.shaped(row as usize, predicted, range);
+        let mut shaped = self.problem.shape_row(row as usize, predicted, range);
         if !given.is_empty() {
             let (screws, ranges) = given.split_at_mut(given.len() - self.arranged.ranges.len());
             self.give(row as usize, &shaped, screws);
@@ -217,7 +229,7 @@ impl Shape for RowShapes<'_> {
 /// Relative frames of a sight, and its target in the last one, or in the device frame if no joint is between the two.
 pub(crate) fn fixed_motions(linkage: &Linkage, sight: Sight) -> (Vec<FixedMotion>, FixedMotion) {
     let (steps, end) = linkage.frames(sight);
-    let end = linkage.still(sight).map_or(*end, |&device| device * *end);
+    let end = linkage.fixed_device_frame(sight).map_or(*end, |&device| device * *end);
     (steps.map(FixedMotion::from).collect(), FixedMotion::from(&end))
 }
 
@@ -231,18 +243,18 @@ fn chunk_size(rows: usize) -> usize {
 pub(crate) fn pack(
     problem: &Problem<'_>,
     linkage: &Linkage,
-    arranged: &ColumnMap,
+    arranged: &KernelColumns,
     rows: &[u32],
     packed: &mut PackedRows,
 ) {
-    let ColumnMap { sight, plan, terms, .. } = arranged;
+    let KernelColumns { sight, plan, terms, .. } = arranged;
     let session = problem.session;
     let station = rows.first().map_or(0, |&row| session.observation(row).station);
     let noise = session.usual_noise(station, problem.noise);
     let usual = (noise, Whitening::new(noise));
     let route = linkage.tree().route(*sight);
     // The places are looked up once for all rows.
-    let place = |(passed, factor, _): &(Passed, ValueFactor, f64)| match factor {
+    let place = |(passed, factor, _): &(PassedJoint, ValueFactor, f64)| match factor {
         ValueFactor::Term(term) => session.packed.place_of(passed.joint, *term),
         ValueFactor::Clock(_) => None,
     };
@@ -282,7 +294,7 @@ fn row_data<'a>(
     (noise, usual): (Noise, Whitening),
     row: usize,
     is_pose: bool,
-) -> RowData<'a> {
+) -> UnpackedRow<'a> {
     let observation = &problem.session.data.observations[row];
     let joints = problem.session.packed.row(row);
     let measured = problem.measurement(row);
@@ -292,8 +304,8 @@ fn row_data<'a>(
         Kernel::Height => [0.0, 0.0, *x],
     };
     if !measured.is_place() {
-        let weight = 1.0 / problem.noise(row)[measured.function().leading()];
-        return RowData { joints, position, orientation: None, weight };
+        let weight = 1.0 / problem.noise(row)[measured.function().leading_quantity()];
+        return UnpackedRow { joints, position, orientation: None, weight };
     }
     let orientation = is_pose.then(|| columns.as_chunks::<3>().0.first_chunk::<3>()).flatten();
     let Whitening { weight, ratio } = usual.whitening_of_row(observation, noise);
@@ -302,5 +314,5 @@ fn row_data<'a>(
         None => weight,
     };
     let orientation = orientation.map(|columns| (columns, ratio));
-    RowData { joints, position, orientation, weight }
+    UnpackedRow { joints, position, orientation, weight }
 }

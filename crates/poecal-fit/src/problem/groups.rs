@@ -1,6 +1,6 @@
 //! Rows of a problem by instrument, target and form, as they are packed for the kernels.
 
-use super::arranged::ColumnMap;
+use super::kernel_columns::KernelColumns;
 use super::scatter::GramScatter;
 use crate::state::Linkage;
 use poecal_numerics::kernels::{PackedRows, SimdLevel};
@@ -18,8 +18,8 @@ pub(crate) enum Accumulate {
 
 /// Groups of rows of a problem.
 #[derive(Clone, Debug)]
-pub(crate) struct Fast {
-    pub(crate) groups: Vec<(Group, GramScatter)>,
+pub(crate) struct FastRows {
+    pub(crate) groups: Vec<(KernelGroup, GramScatter)>,
     pub(crate) level: SimdLevel,
     /// Linkage of the state at which it was built; its joints are those of every other state.
     pub(crate) linkage: Linkage,
@@ -37,8 +37,8 @@ pub(crate) struct SecondDifference {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Group {
-    pub(crate) arranged: ColumnMap,
+pub(crate) struct KernelGroup {
+    pub(crate) arranged: KernelColumns,
     pub(crate) rows: Vec<u32>,
     /// True if its rows stay packed.
     pub(crate) keeps: bool,

@@ -1,7 +1,7 @@
 //! Order and scale of the unknowns of all parameters.
 
-use crate::parameters::{Parameter, Subject, Wrench};
-use crate::state::{Chain, Estimate};
+use crate::parameters::{Parameter, ParameterSubject, Wrench};
+use crate::state::{Estimate, RowChain};
 use nalgebra::Vector3;
 use poecal_arm::lie::TargetTwist;
 
@@ -114,7 +114,7 @@ impl Layout {
     }
 
     /// Target twist `(v; ω)` per unit of each scaled unknown, in the order of a step and in the device's axes (theory.md §4 (14)).
-    pub fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
+    pub fn target_twists(&self, chain: &RowChain, target: usize, out: &mut [TargetTwist]) {
         let mut own = [(Vector3::zeros(), Vector3::zeros()); 6];
         for (parameter, places) in self.parameters() {
             parameter.model().target_twists(chain, target, &mut own[..places.len()]);
@@ -126,7 +126,7 @@ impl Layout {
 
     /// Adds `-wrench · ∂²(target's motion)` of every pair of unknowns to the upper triangle of a row-major matrix. With `a` before `b`
     /// in the chain the second derivative is `ω_a × v_b` of the position and `½ ω_a × ω_b` of the rotation (theory.md §6 (31a)).
-    pub(crate) fn add_curvature(&self, chain: &Chain, target: usize, wrench: &Wrench, out: &mut [f64]) {
+    pub(crate) fn add_curvature(&self, chain: &RowChain, target: usize, wrench: &Wrench, out: &mut [f64]) {
         let n = self.dim();
         let mut add = |a: usize, b: usize, value: f64| out[a.min(b) * n + a.max(b)] -= value;
         let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
@@ -137,11 +137,13 @@ impl Layout {
             .parameters()
             .map(|(parameter, places)| {
                 let place = match parameter.model().subject() {
-                    Subject::Instrument(_) => 0,
-                    Subject::Joint(joint) => {
+                    ParameterSubject::Instrument(_) => 0,
+                    ParameterSubject::Joint(joint) => {
                         1 + chain.joints.iter().position(|view| view.joint == joint).unwrap_or(joint)
                     }
-                    Subject::Target(_) | Subject::Range(_) | Subject::Clock(_) => usize::MAX,
+                    ParameterSubject::Target(_) | ParameterSubject::Range(_) | ParameterSubject::Clock(_) => {
+                        usize::MAX
+                    }
                 };
                 (place, parameter, places)
             })

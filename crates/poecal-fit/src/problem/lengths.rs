@@ -3,15 +3,15 @@
 use nalgebra::Vector3;
 
 use super::{Layout, Problem};
-use crate::parameters::{Parameter, Subject};
+use crate::parameters::{Parameter, ParameterSubject};
 use crate::state::Estimate;
 use poecal_model::measurement::KnownLength;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 impl Problem<'_> {
     /// Adds `½ Σ ((ℓ - |o_a - o_b|) / σ)²` of the known lengths ℓ between the origins of two stations in the base (theory.md §6 (27b)): to the
     /// cost, to the gradient, and to the upper triangle of `JᵀJ` unless that is empty.
-    pub(crate) fn add_lengths(&self, state: &Estimate, mut normal: Normal) -> Normal {
+    pub(crate) fn add_lengths(&self, state: &Estimate, mut normal: NormalEquations) -> NormalEquations {
         for length in &self.session.data.lengths {
             add(length, state, &self.layout, &mut normal);
         }
@@ -19,7 +19,7 @@ impl Problem<'_> {
     }
 }
 
-fn add(known: &KnownLength, state: &Estimate, layout: &Layout, normal: &mut Normal) {
+fn add(known: &KnownLength, state: &Estimate, layout: &Layout, normal: &mut NormalEquations) {
     let n = layout.dim();
     let [a, b] = known.stations.map(|station| state.device(station).inverse().translation);
     let apart = a - b;
@@ -30,7 +30,7 @@ fn add(known: &KnownLength, state: &Estimate, layout: &Layout, normal: &mut Norm
     for (parameter, places) in layout.parameters() {
         let Parameter::DeviceFrame(frame) = parameter else { continue };
         for (station, sign) in known.stations.into_iter().zip([1.0, -1.0]) {
-            if parameter.model().subject() != Subject::Instrument(station) {
+            if parameter.model().subject() != ParameterSubject::Instrument(station) {
                 continue;
             }
             let back = state.device(station).rotation.transpose();

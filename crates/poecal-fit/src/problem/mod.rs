@@ -6,7 +6,6 @@
 //! motions without effect if blocks are held, `bundle.rs` all corners of pictures at once. The Jacobian is never stored: memory is the data and a few
 //! matrices of unknowns × unknowns.
 
-mod arranged;
 mod bundle;
 mod bundle_desk;
 mod bundle_solve;
@@ -16,17 +15,18 @@ mod deviations;
 mod fast;
 mod form;
 mod groups;
+mod kernel_columns;
 mod layout;
 mod lengths;
+mod null_directions;
 mod prior;
 mod refit;
 mod row_block;
 mod row_group;
 mod scatter;
-mod without_effect;
 
 pub use bundle::Bundle;
-pub use bundle_solve::Bundled;
+pub use bundle_solve::BundleOptimum;
 pub use layout::Layout;
 pub use poecal_numerics::kernels::{SimdLevel, simd_levels, stated_level};
 pub use prior::{Prior, TermPrior};
@@ -34,12 +34,12 @@ pub use refit::Refit;
 pub(crate) use row_block::RowBlock;
 
 use crate::parameters::Parameter;
-use crate::state::{Estimate, Range, RangeTerm, Session};
-use groups::{Accumulate, Fast};
+use crate::state::{Estimate, RangeModel, RangeTerm, Session};
+use groups::{Accumulate, FastRows};
 use poecal_arm::lie::Pose;
-use poecal_model::measurement::{Channels, Measurement, NUMBERS, Noise, Sensitivity, Written};
+use poecal_model::measurement::{Channels, FormulatedMeasurement, Measurement, NUMBERS, Noise, Sensitivity};
 use poecal_numerics::kernels::ShapedRow;
-use poecal_numerics::solve::{LeastSquares, Normal};
+use poecal_numerics::solve::{LeastSquares, NormalEquations};
 use std::sync::OnceLock;
 
 /// Largest number of unknowns of a fit: its time grows with the cube of their number, its memory with the square. 1,000 take about
@@ -64,7 +64,7 @@ pub struct Problem<'a> {
     /// Instruction set of the hot path.
     level: SimdLevel,
     /// Groups of rows, once they are built.
-    fast: OnceLock<Fast>,
+    fast: OnceLock<FastRows>,
 }
 
 impl<'a> Problem<'a> {
@@ -86,7 +86,7 @@ impl<'a> Problem<'a> {
             prior: None,
             measured: None,
             rounding_m,
-            level: SimdLevel::best(),
+            level: SimdLevel::best_level(),
             fast: OnceLock::new(),
         }
     }
@@ -129,7 +129,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Adds known lengths and the prior to the normal information of the measurements.
-    fn with_all(&self, state: &Estimate, normal: Normal) -> Normal {
+    fn with_all(&self, state: &Estimate, normal: NormalEquations) -> NormalEquations {
         let mut normal = self.add_lengths(state, normal);
         if let Some((prior, weight)) = self.prior {
             prior.add(state, &self.layout, weight, &mut normal);
@@ -184,8 +184,8 @@ impl<'a> Problem<'a> {
     }
 
     /// Measurement of a row, with the formulation of its residual.
-    fn written(&self, row: usize) -> Written<'_> {
-        Written::new(self.measurement(row), self.session.data.pose_residual)
+    fn formulated_measurement(&self, row: usize) -> FormulatedMeasurement<'_> {
+        FormulatedMeasurement::new(self.measurement(row), self.session.data.pose_residual)
     }
 
     /// Replaces the measurements, one for each row of the data; the configurations stay.
@@ -208,11 +208,11 @@ impl<'a> Problem<'a> {
 
 impl Problem<'_> {
     /// Whitened residual and sensitivity of a row for its predicted target, theory.md §4 (17).
-    pub(crate) fn shaped(&self, row: usize, predicted: &Pose, range: Option<&Range>) -> ShapedRow {
-        let written = self.written(row);
+    pub(crate) fn shape_row(&self, row: usize, predicted: &Pose, range: Option<&RangeModel>) -> ShapedRow {
+        let written = self.formulated_measurement(row);
         let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let mut shaped = ShapedRow::NONE;
-        let read = range.map_or(*predicted, |range| range.seen(predicted));
+        let read = range.map_or(*predicted, |range| range.locate_target(predicted));
         written.residual(&read, &mut shaped.residual);
         written.sensitivity(&read, &mut shaped.sensitivity);
         if let Some(range) = range {
@@ -233,16 +233,17 @@ impl Problem<'_> {
         &self,
         row: usize,
         predicted: &Pose,
-        range: Option<&Range>,
+        range: Option<&RangeModel>,
         terms: &[(RangeTerm, f64)],
         out: &mut [[f64; NUMBERS]],
     ) {
-        let written = self.written(row);
+        let written = self.formulated_measurement(row);
         let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let mut sensitivity = [[0.0; 6]; NUMBERS];
-        written.sensitivity(&range.map_or(*predicted, |range| range.seen(predicted)), &mut sensitivity);
+        written
+            .sensitivity(&range.map_or(*predicted, |range| range.locate_target(predicted)), &mut sensitivity);
         for (&(term, scale), out) in terms.iter().zip(out) {
-            let moved = Range::motion(predicted, term) / scale;
+            let moved = RangeModel::motion(predicted, term) / scale;
             for ((out, [x, y, z, ..]), channel) in out.iter_mut().zip(&sensitivity).zip(channels) {
                 *out = (x * moved.x + y * moved.y + z * moved.z) / noise[channel.quantity];
             }
@@ -250,12 +251,12 @@ impl Problem<'_> {
     }
 
     /// Groups of rows, in the form of the kernels.
-    fn fast(&self, state: &Estimate) -> &Fast {
+    fn fast(&self, state: &Estimate) -> &FastRows {
         match self.fast.get() {
             Some(fast) => fast,
             None => {
                 // The value is built outside `get_or_init`: a rayon thread that waits may re-enter this function.
-                let made = Fast::new(self, state, self.level);
+                let made = FastRows::new(self, state, self.level);
                 self.fast.get_or_init(|| made)
             }
         }
@@ -269,15 +270,15 @@ impl LeastSquares for Problem<'_> {
         self.layout.dim()
     }
 
-    fn normal(&self, state: &Estimate) -> Normal {
+    fn normal(&self, state: &Estimate) -> NormalEquations {
         self.with_all(state, self.fast(state).normal(self, state, Accumulate::All))
     }
 
-    fn nearly_normal(&self, state: &Estimate) -> Normal {
+    fn nearly_normal(&self, state: &Estimate) -> NormalEquations {
         self.with_all(state, self.fast(state).normal(self, state, Accumulate::GaussNewton))
     }
 
-    fn gradient(&self, state: &Estimate) -> Option<Normal> {
+    fn gradient(&self, state: &Estimate) -> Option<NormalEquations> {
         Some(self.with_all(state, self.fast(state).normal(self, state, Accumulate::Gradient)))
     }
 

@@ -3,13 +3,13 @@
 use nalgebra::{SVector, Vector3, Vector6};
 
 use super::Layout;
-use super::deviations::{Deviation, Deviations, Nominal, NominalTarget, OwnMotions};
+use super::deviations::{AxisDerivatives, AxisDeviation, Deviations, NominalAxis, NominalTarget};
 use crate::parameters::{ClockUnknown, Parameter, ValueTerm};
-use crate::state::{ClockTerm, Estimate, Session, delivered};
+use crate::state::{ClockTerm, Estimate, Session, nominal_estimate};
 use poecal_arm::lie::{Pose, Twist};
 use poecal_model::robot::{JointTerm, Robot, Term, Tolerance};
 use poecal_numerics::linalg::Factor6;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Largest number of Gauss-Newton iterations for the motion of the base, which converge quadratically.
 const ITERATIONS: usize = 20;
@@ -28,7 +28,7 @@ const TARGET_LEAST_M: f64 = 0.3;
 /// t in the model at home too, `u = (t - t⁰) / max(0.3 m, reach / 4)`, but no orientation (27c).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
-    axes: Vec<Nominal>,
+    axes: Vec<NominalAxis>,
     targets: Vec<NominalTarget>,
     base_free: bool,
     /// Drifts of the clocks of stations with which readings were computed.
@@ -57,9 +57,10 @@ impl Prior {
     #[must_use]
     pub fn from_session(session: &Session<'_>, common: Tolerance) -> Self {
         let Session { robot, data, unknowns, .. } = *session;
-        let nominal = delivered(robot, data);
+        let nominal = nominal_estimate(robot, data);
         let is_shared = |target: usize| {
-            (0..nominal.tree.instruments().len()).any(|station| nominal.tree.shared(station) == Some(target))
+            (0..nominal.tree.instruments().len())
+                .any(|station| nominal.tree.shared_target(station) == Some(target))
         };
         let bodies = nominal.tree.targets().iter().enumerate();
         let moving = bodies.filter(|(target, body)| body.joint().is_some() && !is_shared(*target));
@@ -80,7 +81,7 @@ impl Prior {
     /// Prior of a robot's axes alone; a joint's own tolerance replaces the common one. `base_free` is true if the device frame is unknown.
     #[must_use]
     pub fn new(robot: &Robot, common: Tolerance, base_free: bool) -> Self {
-        let axes = robot.joints.iter().map(|joint| Nominal {
+        let axes = robot.joints.iter().map(|joint| NominalAxis {
             direction: joint.screw.direction(),
             origin: joint.frame.translation,
             turns: !joint.screw.is_prismatic(),
@@ -156,13 +157,17 @@ impl Prior {
     fn deviations(&self, estimate: &Estimate, motion: Option<&Pose>) -> Deviations {
         let moved = |frame: &Pose| motion.map_or(*frame, |motion| *motion * *frame);
         let frames = estimate.base_from_axis.iter().map(moved);
-        let axes: Vec<Deviation> =
-            self.axes.iter().zip(frames).map(|(nominal, frame)| Deviation::new(nominal, &frame)).collect();
+        let axes: Vec<AxisDeviation> = self
+            .axes
+            .iter()
+            .zip(frames)
+            .map(|(nominal, frame)| AxisDeviation::new(nominal, &frame))
+            .collect();
         let frame = |nominal: &NominalTarget| estimate.base_from_target.get(nominal.target).map(moved);
         let targets = self.targets.iter().filter_map(|it| Some(it.deviation(&frame(it)?))).collect();
         let by_base = self.base_free.then(|| {
             let targets = self.targets.iter().filter_map(|it| Some(it.by_base(&frame(it)?)));
-            (axes.iter().map(Deviation::by_base).collect(), targets.collect())
+            (axes.iter().map(AxisDeviation::by_base).collect(), targets.collect())
         });
         Deviations { axes, targets, by_base }
     }
@@ -185,7 +190,7 @@ impl Prior {
     }
 
     /// Adds `weight` times `½ Σ ((c - c⁰) / σ)²` of the terms of joint values that are unknown, with their nominal coefficients c⁰.
-    fn add_terms(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
+    fn add_terms(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut NormalEquations) {
         let n = layout.dim();
         for (parameter, places) in layout.parameters() {
             let Some(&ValueTerm { joint, kind, term }) = parameter.value_term() else { continue };
@@ -205,7 +210,7 @@ impl Prior {
     }
 
     /// Adds `weight` times `½ (d / σ)²` of the drifts of clocks that are unknown.
-    fn add_clocks(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
+    fn add_clocks(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut NormalEquations) {
         let (n, sigma) = (layout.dim(), ClockTerm::DRIFT_DEVIATION);
         for (parameter, places) in layout.parameters() {
             let Parameter::ClockUnknown(ClockUnknown { station, term: ClockTerm::Drift }) = *parameter else {
@@ -225,7 +230,7 @@ impl Prior {
 
     /// Adds `weight` times the prior to the normal information of a layout's unknowns: to the upper triangle of `JᵀJ` (unless that is
     /// empty), to the gradient and to the cost, with the base eliminated (theory.md §6 (27a)).
-    pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
+    pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut NormalEquations) {
         let (deviations, base) = self.at_best_base(estimate);
         let n = layout.dim();
         if self.terms_count {
@@ -240,7 +245,7 @@ impl Prior {
         for (parameter, places) in layout.parameters() {
             if let Some(axis) = parameter.screw_axis() {
                 let Some(deviation) = deviations.axes.get(axis.joint) else { continue };
-                let own = deviation.own();
+                let own = deviation.own_motions();
                 add_axis((places, &own), &deviation.value, weight, n, normal);
                 if let Some(base) = by_base.and_then(|(axes, _)| axes.get(axis.joint)) {
                     let own = own.columns();
@@ -285,15 +290,15 @@ impl Prior {
 
 /// The same as [`add_columns`] for an axis: with the shifts and turns of a revolute joint, or the turns of a prismatic one.
 fn add_axis(
-    (places, own): (&[(usize, f64)], &OwnMotions),
+    (places, own): (&[(usize, f64)], &AxisDerivatives),
     value: &Vector6<f64>,
     weight: f64,
     n: usize,
-    normal: &mut Normal,
+    normal: &mut NormalEquations,
 ) {
     let first = 4 - places.len().min(4);
     for (k, &(place, scale)) in (first..4).zip(places) {
-        normal.gradient[place] -= weight / scale * own.along(k, value);
+        normal.gradient[place] -= weight / scale * own.column_product(k, value);
     }
     if normal.gram.is_empty() {
         return;
@@ -313,7 +318,7 @@ fn add_columns<const N: usize>(
     value: &SVector<f64, N>,
     weight: f64,
     n: usize,
-    normal: &mut Normal,
+    normal: &mut NormalEquations,
 ) {
     for (k, (&(place, scale), column)) in places.iter().zip(own).enumerate() {
         normal.gradient[place] -= weight / scale * column.dot(value);

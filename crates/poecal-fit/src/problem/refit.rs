@@ -3,7 +3,7 @@
 use super::Problem;
 use crate::state::Estimate;
 use poecal_model::measurement::Measurement;
-use poecal_numerics::solve::{LeastSquares, Normal, Options, Summary, WarmStart, minimize_warm};
+use poecal_numerics::solve::{LeastSquares, NormalEquations, Options, Summary, WarmStart, minimize_warm};
 use poecal_numerics::threads;
 
 /// Fits that one thread makes in turn, with one copy of the problem.
@@ -29,7 +29,7 @@ impl<'a> Refit<'a> {
 
     /// Fits other measurements, one for each row of the data and of the same kind. The returned `JᵀJ` may be frozen, as in
     /// [`poecal_numerics::solve::minimize`].
-    pub fn fit(&mut self, measured: &[Measurement]) -> (Estimate, Normal, Summary) {
+    pub fn fit(&mut self, measured: &[Measurement]) -> (Estimate, NormalEquations, Summary) {
         self.problem.set_measurements(measured);
         minimize_warm(&self.problem, &self.start, &self.options)
     }
@@ -38,7 +38,7 @@ impl<'a> Refit<'a> {
     pub fn fit_all<T: Send>(
         &self,
         trials: &[Vec<Measurement>],
-        kept: impl Fn(Estimate, Normal, Summary) -> T + Sync,
+        kept: impl Fn(Estimate, NormalEquations, Summary) -> T + Sync,
     ) -> Vec<T> {
         threads::concat_chunks(trials, TOGETHER, |_, trials| {
             let mut refit = self.clone();
@@ -55,7 +55,7 @@ impl<'a> Refit<'a> {
 mod tests {
     use super::*;
     use crate::parameters::{Parameter, TargetPlace};
-    use crate::state::{Packed, Session};
+    use crate::state::{PackedValues, Session};
     use nalgebra::Vector3;
     use poecal_arm::lie::{Pose, Screw};
     use poecal_model::measurement::{Dataset, Noise};
@@ -75,7 +75,7 @@ mod tests {
         for reading in [0.0, 1.0, 2.0] {
             data.push(&[reading], None, seen(reading, place)).unwrap();
         }
-        let packed = Packed::new(&robot, data.all_readings(), 1);
+        let packed = PackedValues::new(&robot, data.all_readings(), 1);
         let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
         let session = Session::new(&robot, &data, &packed, false);
         let problem = Problem::new(session, vec![0, 1, 2], free, Noise::new(1e-4, 1e-4));

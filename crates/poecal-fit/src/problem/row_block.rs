@@ -1,18 +1,18 @@
 //! Jacobian and residuals of several rows side by side.
 
 use super::Problem;
-use super::arranged::ColumnMap;
 use super::fast::{ROWS, RowShapes, fixed_motions, pack};
+use super::kernel_columns::KernelColumns;
 use super::row_group::RowGroup;
 use crate::state::{Estimate, Linkage};
-use poecal_numerics::kernels::{self as lanes, Arm, NUMBERS, WIDTH, Wide};
+use poecal_numerics::kernels::{self as lanes, ArmAtEstimate, LaneBlock, NUMBERS, WIDTH};
 
 /// Whitened Jacobian of the prediction and residuals of up to [`WIDTH`] rows, one a lane: three numbers of the position, three of the
 /// rotation. Numbers that a row does not have are zero.
 pub struct RowBlock {
     /// Columns, one after the other.
-    pub jacobian: Vec<[Wide; NUMBERS]>,
-    pub residual: [Wide; NUMBERS],
+    pub jacobian: Vec<[LaneBlock; NUMBERS]>,
+    pub residual: [LaneBlock; NUMBERS],
     /// Number of values of each row.
     pub numbers: [usize; WIDTH],
 }
@@ -20,15 +20,15 @@ pub struct RowBlock {
 impl RowBlock {
     fn new(n: usize) -> Self {
         RowBlock {
-            jacobian: vec![[Wide::ZERO; NUMBERS]; n],
-            residual: [Wide::ZERO; NUMBERS],
+            jacobian: vec![[LaneBlock::ZERO; NUMBERS]; n],
+            residual: [LaneBlock::ZERO; NUMBERS],
             numbers: [0; WIDTH],
         }
     }
 
     fn clear(&mut self) {
-        self.jacobian.fill([Wide::ZERO; NUMBERS]);
-        self.residual = [Wide::ZERO; NUMBERS];
+        self.jacobian.fill([LaneBlock::ZERO; NUMBERS]);
+        self.residual = [LaneBlock::ZERO; NUMBERS];
         self.numbers = [0; WIDTH];
     }
 }
@@ -44,7 +44,7 @@ impl Problem<'_> {
     ) {
         let mut block = RowBlock::new(self.layout().dim());
         for group in RowGroup::all_from_rows(self, rows, |position, _| position) {
-            let arranged = ColumnMap::new(self, state, group.sight, group.form);
+            let arranged = KernelColumns::new(self, state, group.sight, group.form);
             self.by_kernel(state, rows, &(arranged, group.rows), &mut block, &mut each);
         }
     }
@@ -53,7 +53,7 @@ impl Problem<'_> {
         &self,
         state: &Estimate,
         rows: &[u32],
-        (arranged, places): &(ColumnMap, Vec<u32>),
+        (arranged, places): &(KernelColumns, Vec<u32>),
         block: &mut RowBlock,
         each: &mut impl FnMut(&[u32], &mut RowBlock),
     ) {
@@ -63,7 +63,7 @@ impl Problem<'_> {
         let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
         let shapes = RowShapes { problem: self, linkage: &linkage, second: None, arranged, rows: &own };
-        let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.as_shape(), nearly: false };
+        let arm = ArmAtEstimate { plan, steps: &steps, end: &end, shape: shapes.as_shape(), nearly: false };
         let mut packed = ROWS.take();
         pack(self, &linkage, arranged, &own, &mut packed);
         let blocks = packed.blocks.chunks_exact(plan.block_len());

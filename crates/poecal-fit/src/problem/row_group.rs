@@ -1,7 +1,7 @@
 //! Groups of rows that one kernel call can take: rows of one target and one station, all of one form.
 
 use super::Problem;
-use super::form::Form;
+use super::form::RowForm;
 use crate::state::Sight;
 use poecal_model::measurement::{Noise, Observation, Quantity};
 use poecal_numerics::threads;
@@ -15,7 +15,7 @@ const SAME_RATIO: f64 = 1e-14;
 pub(crate) struct RowGroup {
     pub(crate) sight: Sight,
     /// Form of the measurements.
-    pub(crate) form: Form,
+    pub(crate) form: RowForm,
     /// Position over rotation noise in m/rad, if it is the same in all rows.
     pub(crate) ratio: Option<f64>,
     /// Rows, or another key of each.
@@ -28,13 +28,14 @@ impl RowGroup {
         if problem.rows.len() <= CHUNK {
             return RowGroup::all_from_rows(problem, &problem.rows, |_, row| row);
         }
-        let parts =
-            threads::map_chunks(&problem.rows, CHUNK, |_, rows| RowGroup::all_from_rows(problem, rows, |_, row| row));
+        let parts = threads::map_chunks(&problem.rows, CHUNK, |_, rows| {
+            RowGroup::all_from_rows(problem, rows, |_, row| row)
+        });
         let mut groups: Vec<RowGroup> = Vec::new();
         for other in parts.into_iter().flatten() {
             match groups.iter_mut().find(|group| group.holds(other.sight, other.form)) {
                 Some(group) => {
-                    group.ratio = same(group.ratio, other.ratio);
+                    group.ratio = common_ratio(group.ratio, other.ratio);
                     group.rows.extend(other.rows);
                 }
                 None => groups.push(other),
@@ -44,7 +45,11 @@ impl RowGroup {
     }
 
     /// Groups rows by target, station and form; stores `key(position, row)` of each.
-    pub(crate) fn all_from_rows(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
+    pub(crate) fn all_from_rows(
+        problem: &Problem<'_>,
+        rows: &[u32],
+        key: impl Fn(u32, u32) -> u32,
+    ) -> Vec<RowGroup> {
         let mut groups: Vec<RowGroup> = Vec::new();
         let (usual, are_alike) = (Whitening::new(problem.noise), problem.session.noise_ratios.is_empty());
         let ratio = |observation: &Observation| match are_alike {
@@ -59,18 +64,18 @@ impl RowGroup {
             let is_plain = || !problem.layout.has_range(observation.station);
             // The kernels only have noise that is the same in all directions.
             let form = match observation.noise_shape {
-                Some(_) => Form::shaped_of(own(row)),
-                None => Form::from_measurement(own(row), !is_other, residual.is_none(), is_plain),
+                Some(_) => RowForm::shaped_of(own(row)),
+                None => RowForm::from_measurement(own(row), !is_other, residual.is_none(), is_plain),
             };
             let sight = Sight::from(observation);
             // Most rows are like the one before.
             if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
                 at = groups.iter().position(|group| group.holds(sight, form)).unwrap_or(groups.len());
             }
-            let ratio = (form == Form::Pose).then(|| ratio(observation));
+            let ratio = (form == RowForm::Pose).then(|| ratio(observation));
             match groups.get_mut(at) {
                 Some(group) => {
-                    group.ratio = same(group.ratio, ratio);
+                    group.ratio = common_ratio(group.ratio, ratio);
                     group.rows.push(key(position, row));
                 }
                 None => {
@@ -83,13 +88,13 @@ impl RowGroup {
         groups
     }
 
-    fn holds(&self, sight: Sight, form: Form) -> bool {
+    fn holds(&self, sight: Sight, form: RowForm) -> bool {
         self.sight.is_like(sight) && self.form == form
     }
 }
 
 /// The common ratio if both are equal but for rounding.
-fn same(known: Option<f64>, other: Option<f64>) -> Option<f64> {
+fn common_ratio(known: Option<f64>, other: Option<f64>) -> Option<f64> {
     known.zip(other).and_then(|(known, other)| ((other - known).abs() <= SAME_RATIO * known).then_some(known))
 }
 

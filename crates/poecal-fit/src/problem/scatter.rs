@@ -1,7 +1,7 @@
 //! Places of the hot path's sums in the problem's `JᵀJ`.
 
-use super::arranged::{ColumnMap, Place};
-use poecal_numerics::kernels::{TILE, Tiles, Totals};
+use super::kernel_columns::{KernelColumns, StepColumn};
+use poecal_numerics::kernels::{PassTotals, TILE, TileIndex};
 
 /// Places of a group's products, computed once for all passes.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub(crate) enum GramScatter {
 
 impl GramScatter {
     /// Places for rows of this column map, with `n` unknowns.
-    pub(crate) fn new(arranged: &ColumnMap, n: usize) -> Self {
+    pub(crate) fn new(arranged: &KernelColumns, n: usize) -> Self {
         match PlainScatter::new(arranged, n) {
             Some(plain) => GramScatter::Plain(plain),
             None => GramScatter::Listed(ListedScatter::new(arranged, n)),
@@ -22,7 +22,7 @@ impl GramScatter {
     }
 
     /// Adds sums to the upper triangle of a Gram matrix.
-    pub(crate) fn add(&self, totals: &Totals, gram: &mut [f64]) {
+    pub(crate) fn add(&self, totals: &PassTotals, gram: &mut [f64]) {
         match self {
             GramScatter::Plain(plain) => plain.add(totals, gram),
             GramScatter::Listed(listed) => listed.add(totals, gram),
@@ -37,15 +37,15 @@ pub(crate) struct PlainScatter {
     at: Vec<(usize, usize)>,
     /// The same places of the rotation columns, with those of their products among the sums, and of their translation columns.
     turns_at: Vec<(usize, usize)>,
-    turns: Tiles,
-    of_shifts: Tiles,
+    turns: TileIndex,
+    of_shifts: TileIndex,
     /// Factor `ρ²/L²` of theory.md §6 (28a), if it is the same for all rows.
     shared: Option<f64>,
 }
 
 impl PlainScatter {
     /// Places of these columns. `None` if a column is no unknown, or not the only one of its unknown.
-    fn new(arranged: &ColumnMap, n: usize) -> Option<Self> {
+    fn new(arranged: &KernelColumns, n: usize) -> Option<Self> {
         let plan = &arranged.plan;
         let mut is_known = vec![false; n];
         for place in arranged.places() {
@@ -59,22 +59,22 @@ impl PlainScatter {
         if !turns.is_sorted() {
             return None;
         }
-        let tiles = Tiles::new(columns);
-        let of_shifts = Tiles {
+        let tiles = TileIndex::new(columns);
+        let of_shifts = TileIndex {
             left: turns.iter().map(|&shift| tiles.left[shift]).collect(),
             right: turns.iter().map(|&shift| tiles.right[shift]).collect(),
         };
-        let of_place = |place: Place| (place.at * n, place.at);
+        let of_place = |place: StepColumn| (place.at * n, place.at);
         Some(PlainScatter {
             at: arranged.places().take(columns).map(of_place).collect(),
             turns_at: arranged.turn_places().iter().take(turns.len()).copied().map(of_place).collect(),
-            turns: Tiles::new(turns.len()),
+            turns: TileIndex::new(turns.len()),
             of_shifts,
             shared: plan.ratio.map(|ratio| (ratio / plan.length_m).powi(2)),
         })
     }
 
-    fn add(&self, totals: &Totals, gram: &mut [f64]) {
+    fn add(&self, totals: &PassTotals, gram: &mut [f64]) {
         // A product has two places in the matrix; the upper one is the earlier.
         let place =
             |(row, at): (usize, usize), (other_row, other): (usize, usize)| (row + other).min(other_row + at);
@@ -142,17 +142,17 @@ pub(crate) struct ListedScatter {
 }
 
 impl ListedScatter {
-    fn new(arranged: &ColumnMap, n: usize) -> Self {
+    fn new(arranged: &KernelColumns, n: usize) -> Self {
         let plan = &arranged.plan;
         let upper = |a: usize, b: usize| a.min(b) * n + a.max(b);
         // For two columns of one unknown, the product counts twice on the diagonal.
-        let factor = |a: (usize, Place), b: (usize, Place)| {
+        let factor = |a: (usize, StepColumn), b: (usize, StepColumn)| {
             let twice = if a.0 != b.0 && a.1.at == b.1.at { 2.0 } else { 1.0 };
             twice * a.1.sign * b.1.sign
         };
         let columns = plan.columns();
-        let places: Vec<Place> = arranged.places().take(columns).collect();
-        let tiles = Tiles::new(columns);
+        let places: Vec<StepColumn> = arranged.places().take(columns).collect();
+        let tiles = TileIndex::new(columns);
         let mut made = ListedScatter {
             position: Vec::with_capacity(columns * (columns + 1) / 2),
             shared: plan.ratio.map(|ratio| (ratio / plan.length_m).powi(2)),
@@ -171,7 +171,7 @@ impl ListedScatter {
             }
         }
         let turns = if plan.is_pose() { &plan.turns[..] } else { &[] };
-        let own = Tiles::new(turns.len());
+        let own = TileIndex::new(turns.len());
         made.rotation.reserve(turns.len() * (turns.len() + 1) / 2);
         for (a, (&shift, &place)) in turns.iter().zip(arranged.turn_places()).enumerate() {
             for (b, (&other_shift, &other)) in turns.iter().zip(arranged.turn_places()).enumerate().skip(a) {
@@ -186,7 +186,7 @@ impl ListedScatter {
         made
     }
 
-    fn add(&self, totals: &Totals, gram: &mut [f64]) {
+    fn add(&self, totals: &PassTotals, gram: &mut [f64]) {
         for &(from, to) in &self.position {
             gram[to] += totals.products[from];
         }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::state::{Chain, Linkage, Packed, delivered};
+use crate::state::{Linkage, PackedValues, RowChain, nominal_estimate};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::Robot;
@@ -50,10 +50,11 @@ fn turns_of_faces(data: &Dataset, robot: &Robot) -> Option<Vec<Matrix3<f64>>> {
     if !data.observations.iter().any(|row| is_flush(&row.measurement)) {
         return None;
     }
-    let mut nominal = delivered(robot, data);
+    let mut nominal = nominal_estimate(robot, data);
     nominal.device_from_base = Pose::identity();
     nominal.further_devices.iter_mut().for_each(|device| *device = Pose::identity());
-    let (linkage, packed, mut chain) = (Linkage::new(&nominal), Packed::from_dataset(robot, data), Chain::default());
+    let (linkage, packed, mut chain) =
+        (Linkage::new(&nominal), PackedValues::from_dataset(robot, data), RowChain::default());
     let targets = data.targets.len();
     let mut sums = vec![Matrix3::zeros(); data.station_count() * targets];
     for (row, observation) in data.observations.iter().enumerate() {

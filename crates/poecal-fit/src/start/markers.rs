@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use poecal_numerics::distributions::median;
 
 /// Position of each marker in a frame, metres; `None` if it was not seen.
-pub type MarkerPlaces = Vec<Option<Vector3<f64>>>;
+pub type MarkerPositions = Vec<Option<Vector3<f64>>>;
 
 /// Fewest markers that their distances identify.
 pub const FEWEST_MARKERS: usize = 3;
@@ -30,7 +30,7 @@ const WITNESSES: usize = 2;
 
 /// Markers of one body.
 #[derive(Clone, Debug)]
-struct Group {
+struct MarkerGroup {
     markers: Vec<usize>,
     /// For each pair, the usual distance and its largest deviation.
     usual: Vec<Vec<(f64, f64)>>,
@@ -45,12 +45,12 @@ pub struct RenamedMarkers {
     pub markers: Vec<usize>,
 }
 
-impl Group {
+impl MarkerGroup {
     /// The largest group of some columns that keep their distances.
-    fn from_columns(frames: &[MarkerPlaces], columns: &[usize]) -> Option<Self> {
+    fn from_columns(frames: &[MarkerPositions], columns: &[usize]) -> Option<Self> {
         let step = frames.len().div_ceil(SOME).max(1);
         let distances = |a: usize, b: usize| -> Vec<f64> {
-            let apart = |frame: &MarkerPlaces| Some(((*frame.get(a)?)? - (*frame.get(b)?)?).norm());
+            let apart = |frame: &MarkerPositions| Some(((*frame.get(a)?)? - (*frame.get(b)?)?).norm());
             frames.iter().step_by(step).filter_map(apart).collect()
         };
         let usual = |a: usize, b: usize| {
@@ -86,7 +86,7 @@ impl Group {
         markers.sort_unstable();
         let row = |a: &usize| markers.iter().map(|b| of(*a, *b).unwrap_or_default()).collect();
         let usual = markers.iter().map(row).collect();
-        Some(Group { markers, usual })
+        Some(MarkerGroup { markers, usual })
     }
 
     /// True if two positions may be those of two markers, by their numbers in the group.
@@ -96,7 +96,7 @@ impl Group {
     }
 
     /// Column of each marker's position, if the distances decide it; `None` if all names are right.
-    fn sorted(&self, frame: &MarkerPlaces, others: &[usize]) -> Option<Vec<Option<usize>>> {
+    fn sorted(&self, frame: &MarkerPositions, others: &[usize]) -> Option<Vec<Option<usize>>> {
         let place = |column: usize| *frame.get(column)?;
         let own: Vec<(usize, usize)> =
             self.markers.iter().copied().enumerate().filter(|it| place(it.1).is_some()).collect();
@@ -115,7 +115,7 @@ impl Group {
             .filter_map(|column| Some((column, place(column)?)))
             .take(MOST_PLACES)
             .collect();
-        let mut search = Search {
+        let mut search = MarkerSearch {
             group: self,
             places: &places,
             taken: Vec::new(),
@@ -138,8 +138,8 @@ impl Group {
 }
 
 /// A search for the positions of markers.
-struct Search<'g> {
-    group: &'g Group,
+struct MarkerSearch<'g> {
+    group: &'g MarkerGroup,
     /// Columns and positions.
     places: &'g [(usize, Vector3<f64>)],
     /// Column and position of each marker so far.
@@ -150,7 +150,7 @@ struct Search<'g> {
     is_unclear: bool,
 }
 
-impl Search<'_> {
+impl MarkerSearch<'_> {
     /// Assigns the next marker to each possible position, or to none.
     fn next(&mut self) {
         let marker = self.taken.len();
@@ -185,8 +185,8 @@ impl RenamedMarkers {
     /// Markers in some columns of one body, identified by their distances; the positions of `others` may be theirs too. `None` if no three of
     /// them keep their distances.
     #[must_use]
-    pub fn from_frames(frames: &[MarkerPlaces], columns: &[usize], others: &[usize]) -> Option<Self> {
-        let group = Group::from_columns(frames, columns)?;
+    pub fn from_frames(frames: &[MarkerPositions], columns: &[usize], others: &[usize]) -> Option<Self> {
+        let group = MarkerGroup::from_columns(frames, columns)?;
         let others: Vec<usize> = others.iter().copied().filter(|it| !group.markers.contains(it)).collect();
         let mut found = RenamedMarkers { markers: group.markers.clone(), ..RenamedMarkers::default() };
         for (at, frame) in frames.iter().enumerate() {
@@ -209,7 +209,12 @@ mod tests {
     use poecal_arm::lie::rotation;
 
     /// A body that turns and moves: its markers with noise, in frames.
-    fn moving(markers: &[Vector3<f64>], frames: usize, noise_m: f64, seed: u64) -> Vec<MarkerPlaces> {
+    fn simulate_markers(
+        markers: &[Vector3<f64>],
+        frames: usize,
+        noise_m: f64,
+        seed: u64,
+    ) -> Vec<MarkerPositions> {
         let mut state = seed;
         let mut random = move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -243,7 +248,7 @@ mod tests {
             };
             let markers: Vec<Vector3<f64>> = (0..4 + seed % 2).map(spread).collect();
             let count = markers.len();
-            let mut frames = moving(&markers, 400, 2e-4, seed + 1);
+            let mut frames = simulate_markers(&markers, 400, 2e-4, seed + 1);
             // Two columns have no name: one with positions of a marker that lost its own, and one of a static object.
             for frame in &mut frames {
                 frame.extend([None, Some(Vector3::new(3.0, 2.0, 1.0))]);
@@ -286,7 +291,7 @@ mod tests {
 
     #[test]
     fn markers_that_move_by_themselves_are_no_body() {
-        let mut frames = moving(&[Vector3::zeros(), Vector3::x() * 0.1], 200, 1e-4, 3);
+        let mut frames = simulate_markers(&[Vector3::zeros(), Vector3::x() * 0.1], 200, 1e-4, 3);
         for (at, frame) in frames.iter_mut().enumerate() {
             frame.push(Some(Vector3::new(0.001 * at as f64, 0.0, 0.0)));
         }
@@ -298,7 +303,7 @@ mod tests {
         // The triangle is isosceles: no distance reveals the exchange of its equal vertices, and both reveal the ghost of its apex.
         let markers =
             [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
-        let mut frames = moving(&markers, 200, 1e-4, 4);
+        let mut frames = simulate_markers(&markers, 200, 1e-4, 4);
         frames[50].swap(0, 1);
         let found = RenamedMarkers::from_frames(&frames, &[0, 1, 2], &[]).unwrap();
         assert!(found.frames.is_empty(), "{:?}", found.frames);

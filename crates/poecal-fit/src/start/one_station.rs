@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::averaging::{cube_rotations, mean_rotation, rigid_motion};
 use super::hand_eye;
-use super::others::{self, Other};
+use super::placeless_devices::{self, StartRow};
 use super::registration::{Registration, polish};
-use crate::state::{Chain, Estimate, Linkage, Unknowns, sample_rows};
+use crate::state::{Estimate, Linkage, RowChain, Unknowns, sample_rows};
 use poecal_arm::lie::{Pose, rotation};
 
 /// Rows of the search for a start; the polish afterwards uses all.
@@ -66,7 +66,7 @@ struct SampledRows {
     turned: Vec<Option<Matrix3<f64>>>,
     target: Vec<usize>,
     /// Rows that measure no position.
-    others: Vec<Other>,
+    others: Vec<StartRow>,
     /// Spread of the measured positions, metres.
     spread_m: f64,
 }
@@ -76,7 +76,7 @@ impl SampledRows {
         let mut in_base = start.clone();
         in_base.device_from_base = Pose::identity();
         let linkage = Linkage::new(&in_base);
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         let mut seen = SampledRows {
             base_motion: Vec::new(),
             measured: Vec::new(),
@@ -96,7 +96,7 @@ impl SampledRows {
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let motion = chain.target * start.base_from_target[observation.target].inverse();
             let Some(position) = model.position().filter(|_| has_places) else {
-                seen.others.push(Other {
+                seen.others.push(StartRow {
                     motion,
                     measurement: observation.measurement,
                     target: observation.target,
@@ -151,7 +151,7 @@ impl SampledRows {
             return None;
         }
         let mut best: Option<(Estimate, f64)> = None;
-        for candidate in others::starts(&self.others, start, problem.targets_free) {
+        for candidate in placeless_devices::starts(&self.others, start, problem.targets_free) {
             let found = polish(problem, candidate, sample.to_vec(), 20);
             // A later start must be clearly better, so that rounding does not choose between equal ones.
             if best.as_ref().is_none_or(|(_, cost)| found.1 < cost * (1.0 - 1e-6)) {

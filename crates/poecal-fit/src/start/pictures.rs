@@ -1,12 +1,12 @@
 //! Mounting of a camera (robot or base), and choice of two poses of a board in a picture, with nominal screws.
 
-use super::misread::misread;
+use super::misread_pictures::find_misreading;
 use super::registration::Registration;
 use super::stations::register;
-use crate::state::{Estimate, Packed, RowError, Session, delivered};
+use crate::state::{Estimate, PackedValues, RowError, Session, nominal_estimate};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::camera::{Picture, Pictures};
-use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity, Stated, deviation};
+use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity, StatedDeviations, deviation};
 use poecal_model::robot::{Mount, Robot};
 use poecal_numerics::distributions::median;
 use poecal_numerics::error::first_few;
@@ -27,14 +27,14 @@ const EVIDENT: f64 = 1.5;
 
 /// Findings on pictures, a sentence each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SettledPictures {
+pub struct SolvedPictures {
     /// Assumed mounting of the camera, if that is evident.
     pub notes: Vec<String>,
     /// Possible mistakes.
     pub warnings: Vec<String>,
 }
 
-impl SettledPictures {
+impl SolvedPictures {
     /// All notes and warnings.
     #[must_use]
     pub fn all(self) -> Vec<String> {
@@ -45,40 +45,40 @@ impl SettledPictures {
 /// Chooses, for each picture that has two poses, the one that agrees with the other pictures. For cameras and boards that the model does not
 /// place by name it determines the mounting: the camera beside the robot and the board in its hand, or the reverse. The mounting with the
 /// smaller error of the corners is taken, with the current robot (theory.md §6, *Start*).
-pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> SettledPictures {
+pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> SolvedPictures {
     if data.pictures.is_empty() {
-        return SettledPictures::default();
+        return SolvedPictures::default();
     }
     let is_placed = |name: &str, mounts: &[Mount]| mounts.iter().any(|mount| mount.name == name);
     let Pictures { cameras, boards, .. } = &data.pictures;
     let placed = cameras.iter().any(|it| is_placed(&it.name, &robot.instruments))
         || boards.iter().any(|it| is_placed(&it.name, &robot.mounted));
-    let (beside, beside_px) = settled(data, robot);
+    let (beside, beside_px) = settle_poses(data, robot);
     if placed {
         let mut warnings = turned_back(data, &beside);
-        warnings.extend(misread(data, beside_px, |other| settled(other, robot).1));
+        warnings.extend(find_misreading(data, beside_px, |other| settle_poses(other, robot).1));
         *data = beside;
-        return SettledPictures { warnings, notes: Vec::new() };
+        return SolvedPictures { warnings, notes: Vec::new() };
     }
-    let (held, held_px) = settled(&in_hand(data), robot);
+    let (held, held_px) = settle_poses(&in_hand(data), robot);
     let (found, place, own, other) = if held_px < beside_px {
         (held, "on the last link, and the board stays", held_px, beside_px)
     } else {
         (beside, "beside the robot, and the board is on the last link", beside_px, held_px)
     };
     let mut warnings = turned_back(data, &found);
-    let missed = |read: &Dataset| settled(read, robot).1.min(settled(&in_hand(read), robot).1);
-    warnings.extend(misread(data, own, missed));
+    let missed = |read: &Dataset| settle_poses(read, robot).1.min(settle_poses(&in_hand(read), robot).1);
+    warnings.extend(find_misreading(data, own, missed));
     *data = found;
     let mut placed = format!(
         "the camera is {place}: so the nominal robot misses half of the pictures by less than {own:.1} px, the other way {other:.1} px"
     );
     if other >= EVIDENT * own {
-        return SettledPictures { notes: vec![placed], warnings };
+        return SolvedPictures { notes: vec![placed], warnings };
     }
     placed.push_str("; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK");
     warnings.insert(0, placed);
-    SettledPictures { notes: Vec::new(), warnings }
+    SolvedPictures { notes: Vec::new(), warnings }
 }
 
 /// Pictures whose corners were taken in reverse order.
@@ -139,17 +139,17 @@ fn named_station(data: &mut Dataset, name: Option<&str>) -> usize {
 }
 
 /// The data with the pose of each picture that fits the others, and the median error of corners, pixels.
-fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
+fn settle_poses(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
     let mut found = data.clone();
     let rows: Vec<u32> = data.pictures.all.iter().map(|it| it.row).collect();
     for at in 0..found.pictures.all.len() {
         choose(&mut found, at, |picture| picture.poses.first().copied());
     }
-    let packed = Packed::from_dataset(robot, &found);
+    let packed = PackedValues::from_dataset(robot, &found);
     let (mut best, mut result, mut used) = (f64::INFINITY, found.clone(), rows.clone());
     for _ in 0..ROUNDS {
-        let registered = registered(&found, robot, &packed, &used);
-        let predicted = predicted(&found, robot, &packed, &rows, &registered);
+        let registered = register_pictures(&found, robot, &packed, &used);
+        let predicted = predict_poses(&found, robot, &packed, &rows, &registered);
         let missed: Vec<f64> =
             found.pictures.all.iter().zip(&predicted).map(|it| missed_px(&found, it)).collect();
         let usual = median(missed.iter().copied()).unwrap_or(f64::INFINITY);
@@ -160,7 +160,7 @@ fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
         for (at, predicted) in predicted.iter().enumerate() {
             has_changed |= turn_back(&mut found, at, predicted);
             let before = found.pictures.all[at].poses.first().copied();
-            choose(&mut found, at, |picture| nearest(picture, predicted));
+            choose(&mut found, at, |picture| nearest_pose(picture, predicted));
             has_changed |= before != found.pictures.all[at].poses.first().copied();
         }
         // A picture whose board is tilted in the wrong direction would bias all others.
@@ -176,25 +176,31 @@ fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
 }
 
 /// Registration of some pictures with equal noise: by their own noise, a wrong pose of small variance would bias the others.
-fn registered(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32]) -> Estimate {
+fn register_pictures(data: &Dataset, robot: &Robot, packed: &PackedValues, rows: &[u32]) -> Estimate {
     let mut plain = data.clone();
     for &row in rows {
         let observation = &mut plain.observations[row as usize];
-        (observation.noise_shape, observation.stated) = (None, Stated::default());
+        (observation.noise_shape, observation.stated) = (None, StatedDeviations::default());
     }
     let session = Session::new(robot, &plain, packed, true);
     let registration = Registration { session, rows, noise: NOISE, targets_free: true, prior: None };
-    register(&registration, &delivered(robot, &plain)).0
+    register(&registration, &nominal_estimate(robot, &plain)).0
 }
 
 /// Poses of the boards in the frames of their cameras, as an estimate predicts them, one for each picture.
-fn predicted(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<Pose> {
+fn predict_poses(
+    data: &Dataset,
+    robot: &Robot,
+    packed: &PackedValues,
+    rows: &[u32],
+    estimate: &Estimate,
+) -> Vec<Pose> {
     let session = Session::new(robot, data, packed, true);
     let errors = session.errors(rows, estimate);
     let seen = data.pictures.all.iter().zip(errors);
     seen.map(|(picture, error)| {
         let measured = data.observations[picture.row as usize].measurement.pose();
-        picture.directed(&predicted_pose(&measured, &error))
+        picture.directed_measurement(&predicted_pose(&measured, &error))
     })
     .collect()
 }
@@ -220,7 +226,7 @@ fn choose(data: &mut Dataset, at: usize, pose: impl FnOnce(&Picture) -> Option<P
     if let Some(place) = picture.poses.iter().position(|it| *it == chosen) {
         picture.poses.swap(0, place);
     }
-    let (row, measured) = (picture.row as usize, picture.directed(&chosen));
+    let (row, measured) = (picture.row as usize, picture.directed_measurement(&chosen));
     let sighting = {
         let picture = &data.pictures.all[at];
         data.pictures.view(picture).and_then(|view| view.sighting(&chosen, true))
@@ -252,7 +258,7 @@ fn turn_back(data: &mut Dataset, at: usize, predicted: &Pose) -> bool {
 }
 
 /// Pose of a picture with the smallest rotation from a predicted one.
-fn nearest(picture: &Picture, predicted: &Pose) -> Option<Pose> {
+fn nearest_pose(picture: &Picture, predicted: &Pose) -> Option<Pose> {
     let turned = |pose: &&Pose| deviation(pose, predicted).fixed_rows::<3>(3).norm();
     picture.poses.iter().min_by(|a, b| turned(a).total_cmp(&turned(b))).copied()
 }

@@ -91,7 +91,7 @@ pub fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Paramet
     Parameter::DeviceFrame(if freedom == Freedom::FRAME {
         DeviceFrame::new(station, data.mean_position(&own))
     } else {
-        DeviceFrame::showing(station, freedom)
+        DeviceFrame::from_freedom(station, freedom)
     })
 }
 

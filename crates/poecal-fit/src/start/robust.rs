@@ -60,7 +60,7 @@ pub fn row_distances(problem: &Registration<'_>, estimate: &Estimate) -> Vec<f64
 fn distances(problem: &Registration<'_>, estimate: &Estimate) -> (Vec<f64>, f64) {
     let Registration { session, rows, noise, .. } = problem;
     let distances = session.map_squares(rows, estimate, |observation, squares| {
-        let whitened = session.whitened(observation, squares.map(|(squares, _)| squares), *noise);
+        let whitened = session.whiten_squares(observation, squares.map(|(squares, _)| squares), *noise);
         whitened.iter().map(|(_, square)| square).sum::<f64>().sqrt()
     });
     let median = median(distances.iter().copied()).unwrap_or(0.0);

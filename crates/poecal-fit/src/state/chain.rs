@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::packing::Bases;
-use super::{ClockChange, Estimate, Packed, Passed, Range, Sight, Tree};
+use super::{ClockChange, Estimate, KinematicTree, PackedValues, PassedJoint, RangeModel, Sight};
 use poecal_arm::lie::Pose;
 use poecal_model::robot::{JointKind, JointTerm, Term};
 use poecal_numerics::kernels::FixedMotion;
@@ -14,7 +14,7 @@ use poecal_numerics::kernels::FixedMotion;
 /// pose and one elementary motion for each joint.
 #[derive(Clone, Debug)]
 pub struct Linkage {
-    tree: Arc<Tree>,
+    tree: Arc<KinematicTree>,
     /// For each route: `device_from_axis` of its first joint from the first station, then each axis in the one before.
     steps: Vec<Vec<Pose>>,
     /// Device frame of the first station in that of each further one.
@@ -23,7 +23,7 @@ pub struct Linkage {
     ends: Vec<(Pose, Pose)>,
     first_device: Pose,
     /// Zero and scale of the distances of each station; empty if all are plain.
-    ranges: Vec<Range>,
+    ranges: Vec<RangeModel>,
     /// Error of the clock of each station; empty if all are right.
     clocks: Vec<ClockChange>,
     /// Terms of the value of each joint, with their places among all; empty if there are none.
@@ -76,7 +76,7 @@ impl Linkage {
         let of = |joint: usize| terms.iter().copied().enumerate().filter(move |(_, it)| it.joint == joint);
         let joints = if estimate.has_terms() { tree.kinds().len() } else { 0 };
         let terms = (0..joints).map(|joint| of(joint).collect()).collect();
-        let ranges = if ranges.iter().all(Range::is_plain) { Vec::new() } else { ranges.clone() };
+        let ranges = if ranges.iter().all(RangeModel::is_plain) { Vec::new() } else { ranges.clone() };
         let clocks = if clocks.iter().all(ClockChange::is_none) { Vec::new() } else { clocks.clone() };
         Linkage {
             tree: Arc::clone(tree),
@@ -91,7 +91,7 @@ impl Linkage {
     }
 
     /// `device_from_axis` of the first joint on the kinematic chain from an instrument to a target, then each axis in the one before, at
-    /// zero joint values; and the target in the last axis. Without a joint it is the target in the base, which [`Linkage::still`] has in
+    /// zero joint values; and the target in the last axis. Without a joint it is the target in the base, which [`Linkage::fixed_device_frame`] has in
     /// the device frame.
     pub(crate) fn frames(&self, sight: Sight) -> (impl Iterator<Item = &Pose>, &Pose) {
         let (first, end) = &self.ends[self.tree.sight_index(sight)];
@@ -100,14 +100,14 @@ impl Linkage {
     }
 
     /// Device frame of a sight without moving joints.
-    pub(crate) fn still(&self, sight: Sight) -> Option<&Pose> {
+    pub(crate) fn fixed_device_frame(&self, sight: Sight) -> Option<&Pose> {
         self.steps[self.tree.route_index(sight)]
             .is_empty()
             .then(|| &self.ends[self.tree.sight_index(sight)].0)
     }
 
     /// Zero and scale of a station's distances, unless these are plain.
-    pub(crate) fn range(&self, station: usize) -> Option<&Range> {
+    pub(crate) fn range(&self, station: usize) -> Option<&RangeModel> {
         self.ranges.get(station).filter(|it| !it.is_plain())
     }
 
@@ -124,7 +124,7 @@ impl Linkage {
     /// True if the joint values on a route are those of a row, in their order.
     pub(crate) fn is_plain(&self, route: usize) -> bool {
         let route = &self.tree.routes()[route];
-        let in_order = |(index, passed): (usize, &Passed)| passed.joint == index && !passed.backward;
+        let in_order = |(index, passed): (usize, &PassedJoint)| passed.joint == index && !passed.backward;
         self.terms.is_empty()
             && self.clocks.is_empty()
             && route.len() == self.tree.kinds().len()
@@ -132,7 +132,7 @@ impl Linkage {
     }
 
     /// Tree of these frames.
-    pub(crate) fn tree(&self) -> &Tree {
+    pub(crate) fn tree(&self) -> &KinematicTree {
         &self.tree
     }
 
@@ -145,7 +145,7 @@ impl Linkage {
     }
 
     /// Change of the value of a joint by the error of a station's clock, if there is one: theory.md §5 (26a).
-    fn by_clock(&self, station: usize, packed: &Packed, row: usize, joint: usize) -> Option<f64> {
+    fn by_clock(&self, station: usize, packed: &PackedValues, row: usize, joint: usize) -> Option<f64> {
         let clock = self.clocks.get(station)?;
         let (rates, time_s) = packed.motion(row)?;
         Some(clock.shift(time_s) * rates.get(joint)?)
@@ -156,14 +156,14 @@ impl Linkage {
     #[inline]
     pub(crate) fn joint_value(
         &self,
-        passed: Passed,
-        packed: &Packed,
+        passed: PassedJoint,
+        packed: &PackedValues,
         row: usize,
         sight: Sight,
     ) -> (f64, f64, f64) {
         let joint = passed.joint;
         let from = sight.from.filter(|_| passed.backward);
-        let (value, (c, s)) = packed.at(row, from, joint);
+        let (value, (c, s)) = packed.value_at(row, from, joint);
         let kind = self.tree.kinds()[joint];
         let by_terms = self.terms.get(joint).map(|terms| packed.bases_at(row, from).sum(terms));
         let by_clock = if self.clocks.is_empty() || sight.from.is_some() {
@@ -221,7 +221,7 @@ pub struct JointView {
 
 /// A row's joints and target in the device's axes. Reused from row to row.
 #[derive(Clone, Debug)]
-pub struct Chain {
+pub struct RowChain {
     /// Joints from the instrument to the target; for a device on the base, from base to tip. A joint that both configurations of a row move
     /// is there twice.
     pub joints: Vec<JointView>,
@@ -244,9 +244,9 @@ pub struct Chain {
     bases: [(Vec<f64>, Vec<f64>); 2],
 }
 
-impl Default for Chain {
+impl Default for RowChain {
     fn default() -> Self {
-        Chain {
+        RowChain {
             joints: Vec::new(),
             last: Pose::identity(),
             target: Pose::identity(),
@@ -261,15 +261,15 @@ impl Default for Chain {
     }
 }
 
-impl Chain {
+impl RowChain {
     /// Evaluates the chain of a row in the device's axes, metres and radians: `X T_{i-1} A_i` of each joint (theory.md §5 (19)) and the
     /// prediction of theory.md §4 (13). `seen` is an observation, or a target alone, as measured from the first station.
-    pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, seen: impl Into<Sight>) {
+    pub fn evaluate(&mut self, linkage: &Linkage, packed: &PackedValues, row: usize, seen: impl Into<Sight>) {
         let sight = seen.into();
         let Linkage { tree, .. } = linkage;
         self.joints.clear();
         self.station = sight.station;
-        self.shared = tree.shared(sight.station);
+        self.shared = tree.shared_target(sight.station);
         if !Arc::ptr_eq(&self.terms, packed.terms()) {
             self.terms = Arc::clone(packed.terms());
         }
@@ -278,7 +278,7 @@ impl Chain {
         for ((own, values), from) in self.bases.iter_mut().zip([None, sight.from]).take(configurations) {
             let found = packed.bases_at(row, from);
             own.clear();
-            own.extend_from_slice(found.packed());
+            own.extend_from_slice(found.packed_functions());
             values.clear();
             values.extend_from_slice(found.values());
         }
@@ -287,11 +287,11 @@ impl Chain {
             self.rates.extend_from_slice(rates);
             self.time_s = time_s;
         }
-        let mut moved = linkage.still(sight).copied().unwrap_or_else(Pose::identity);
+        let mut moved = linkage.fixed_device_frame(sight).copied().unwrap_or_else(Pose::identity);
         let (steps, end) = linkage.frames(sight);
         for (&passed, step) in tree.route(sight).iter().zip(steps) {
             let (value, cosine_or_value, sine) = linkage.joint_value(passed, packed, row, sight);
-            let Passed { joint, backward } = passed;
+            let PassedJoint { joint, backward } = passed;
             let kind = tree.kinds()[joint];
             let frame = moved * *step;
             let x = frame.rotation.column(0).into_owned();
@@ -327,7 +327,7 @@ impl Chain {
     }
 
     /// Rates of the joint values (rad/s, m/s), and the time of the row from the middle of all, seconds, if it was measured in motion.
-    pub(crate) fn moving(&self) -> Option<(&[f64], f64)> {
+    pub(crate) fn motion_rates(&self) -> Option<(&[f64], f64)> {
         (!self.rates.is_empty() && !self.in_two).then_some((&self.rates, self.time_s))
     }
 

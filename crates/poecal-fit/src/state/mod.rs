@@ -20,16 +20,16 @@ mod sight;
 mod tree;
 mod unknowns;
 
-pub use chain::{Chain, JointView, Linkage};
+pub use chain::{JointView, Linkage, RowChain};
 pub use clock::{ClockChange, ClockTerm};
-pub use packing::{Packed, sample_rows};
+pub use packing::{PackedValues, sample_rows};
 pub use predictions::turn_to_first;
-pub use range::{Range, RangeTerm};
+pub use range::{RangeModel, RangeTerm};
 pub use rounding::Rounding;
 pub use row_error::{RowError, rms_m};
 pub use session::Session;
 pub use sight::Sight;
-pub use tree::{Passed, Stand, Tree};
+pub use tree::{InstrumentMount, KinematicTree, PassedJoint};
 pub use unknowns::Unknowns;
 
 use std::sync::Arc;
@@ -44,7 +44,7 @@ use poecal_model::robot::{Body, JointKind, JointTerm, Robot, Term};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Bodies of joints, instruments and targets.
-    pub tree: Arc<Tree>,
+    pub tree: Arc<KinematicTree>,
     /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
     pub base_from_axis: Vec<Pose>,
     /// Terms of the joints' values, among them the offsets (lou2009: Δθ).
@@ -56,7 +56,7 @@ pub struct Estimate {
     /// The base in the device frame of each further station ([`Dataset::stations`]).
     pub further_devices: Vec<Pose>,
     /// Zero and scale of the distances of each station; those beyond the last are plain.
-    pub ranges: Vec<Range>,
+    pub ranges: Vec<RangeModel>,
     /// Error of the clock of each station; those beyond the last are right.
     pub clocks: Vec<ClockChange>,
 }
@@ -67,13 +67,18 @@ impl Estimate {
     #[must_use]
     pub fn new(robot: &Robot, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
         let targets = vec![robot.tip_body(); base_from_target.len()];
-        let tree = Tree::new(robot, vec![Stand::On(Body::Base)], targets);
-        Estimate::on(robot, tree, base_from_target, device_from_base)
+        let tree = KinematicTree::new(robot, vec![InstrumentMount::On(Body::Base)], targets);
+        Estimate::from_placed(robot, tree, base_from_target, device_from_base)
     }
 
     /// The same estimate with instruments and targets on the bodies of a tree; further device frames are that of the first.
     #[must_use]
-    pub fn on(robot: &Robot, tree: Tree, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
+    pub fn from_placed(
+        robot: &Robot,
+        tree: KinematicTree,
+        base_from_target: Vec<Pose>,
+        device_from_base: Pose,
+    ) -> Self {
         let further = tree.instruments().len().saturating_sub(1);
         Estimate {
             tree: Arc::new(tree),
@@ -100,7 +105,7 @@ impl Estimate {
     /// `device_from_base` of a station; for an instrument on the robot at zero joint values. That of a shared target follows from the
     /// target.
     pub fn device_at_zero(&self, station: usize) -> Pose {
-        match self.tree.shared(station) {
+        match self.tree.shared_target(station) {
             Some(target) => self.base_from_target[target].inverse(),
             None => *self.device(station),
         }
@@ -122,14 +127,14 @@ impl Estimate {
 
     /// Zero and scale of a station's distances.
     #[must_use]
-    pub fn range(&self, station: usize) -> Range {
+    pub fn range(&self, station: usize) -> RangeModel {
         self.ranges.get(station).copied().unwrap_or_default()
     }
 
     /// [`Estimate::range`], mutable.
-    pub(crate) fn range_mut(&mut self, station: usize) -> &mut Range {
+    pub(crate) fn range_mut(&mut self, station: usize) -> &mut RangeModel {
         if self.ranges.len() <= station {
-            self.ranges.resize(station + 1, Range::default());
+            self.ranges.resize(station + 1, RangeModel::default());
         }
         &mut self.ranges[station]
     }
@@ -203,7 +208,7 @@ impl Estimate {
     /// The same physical robot in a base frame moved by `G`: screws and targets move by `Ad_G`, device frames by `G⁻¹`. Predictions in
     /// the device frame do not change (theory.md §8 (37)).
     #[must_use]
-    pub fn rebased(&self, motion: &Pose) -> Self {
+    pub fn rebase(&self, motion: &Pose) -> Self {
         Estimate {
             tree: Arc::clone(&self.tree),
             base_from_axis: self.base_from_axis.iter().map(|&frame| *motion * frame).collect(),
@@ -285,7 +290,7 @@ impl Estimate {
             *target = (of(&motions, body.joint()) * *target).orthonormalized();
         }
         for (station, stand) in self.tree.instruments().iter().enumerate() {
-            if let Stand::On(Body::Link(joint)) = *stand {
+            if let InstrumentMount::On(Body::Link(joint)) = *stand {
                 let device = moved.device_mut(station);
                 *device = (*device * of(&motions, Some(joint)).inverse()).orthonormalized();
             }
@@ -299,7 +304,7 @@ impl Estimate {
         let sample = sample_rows(rows, 200);
         let count = sample.len() as f64;
         let linkage = Linkage::new(self);
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         let mut along = vec![0.0; self.kinds().len()];
         for &row in &sample {
             let seen = session.observation(row);
@@ -316,7 +321,7 @@ impl Estimate {
 
 /// Metres that a radian counts, L: a third of the reach of the arm with the strokes in the data (theory.md §6, *Physical scaling*).
 #[must_use]
-pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
+pub fn radian_m(robot: &Robot, packed: &PackedValues) -> f64 {
     let strokes: f64 = (0..robot.joints.len())
         .filter(|&joint| robot.joints[joint].kind == JointKind::Prismatic)
         .map(|joint| {
@@ -332,10 +337,15 @@ pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
 /// Nominal estimate: nominal screws, each target and instrument at its pose in the model, other targets at the tip, and other
 /// instruments at the base.
 #[must_use]
-pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
+pub fn nominal_estimate(robot: &Robot, data: &Dataset) -> Estimate {
     let place = robot.places_of_targets();
     let base_from_target = data.targets.iter().map(|name| place(name.as_deref()).1).collect();
-    let mut delivered = Estimate::on(robot, Tree::from_robot(robot, data), base_from_target, Pose::identity());
+    let mut delivered = Estimate::from_placed(
+        robot,
+        KinematicTree::from_robot(robot, data),
+        base_from_target,
+        Pose::identity(),
+    );
     for station in 0..data.station_count() {
         let name = data.stations.get(station).and_then(Option::as_deref);
         if let Some(mount) = robot.instruments.iter().find(|mount| Some(mount.name.as_str()) == name) {
@@ -348,7 +358,7 @@ pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
 /// A frame with z along the screw and its origin at the axis point nearest to `near`.
 fn axis_frame(screw: &Screw, near: &Vector3<f64>) -> Pose {
     let z = screw.direction();
-    let x = rotation::perpendicular(&z);
+    let x = rotation::perpendicular_to(&z);
     let turn = nalgebra::Matrix3::from_columns(&[x, z.cross(&x), z]);
     Pose::new(turn, screw.nearest_point(near))
 }

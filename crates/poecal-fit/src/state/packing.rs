@@ -15,7 +15,7 @@ const CHUNK: usize = 1024;
 /// Joint values θ of all rows, flat: `n` joints a row, radians or metres. Beside θ, `(cos θ, sin θ)` of a revolute joint and `(θ, 0)` of a
 /// prismatic one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Packed {
+pub struct PackedValues {
     joints: usize,
     kinds: Vec<JointKind>,
     values: Vec<(f64, f64)>,
@@ -28,17 +28,17 @@ pub struct Packed {
     rates: Vec<f64>,
     times_s: Vec<f64>,
     /// Configurations of instruments that differ from those of the targets, in rows of their own.
-    further: Option<Box<Packed>>,
+    further: Option<Box<PackedValues>>,
 }
 
-impl Packed {
+impl PackedValues {
     /// Packs the joint values `θ = m ρ + c` (theory.md §2 (7)) of readings (radians, metres), `width` a row in the order of
     /// [`Robot::reading_names`].
     #[must_use]
     pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
         let (indices, width) = (robot.reading_indices(), width.max(1));
         let factors = |row: usize| robot.factors_of(&readings[row * width..][..width]);
-        Packed::fill(robot, readings.len() / width, factors, |first, angles| {
+        PackedValues::fill(robot, readings.len() / width, factors, |first, angles| {
             let rows = readings[first * width..].chunks_exact(width);
             for (angles, row) in angles.chunks_exact_mut(indices.len().max(1)).zip(rows) {
                 for ((angle, joint), &index) in angles.iter_mut().zip(&robot.joints).zip(&indices) {
@@ -52,9 +52,9 @@ impl Packed {
     #[must_use]
     pub fn from_dataset(robot: &Robot, data: &Dataset) -> Self {
         let width = data.reading_names().len();
-        let mut packed = Packed::new(robot, data.all_readings(), width);
+        let mut packed = PackedValues::new(robot, data.all_readings(), width);
         if !data.further_readings().is_empty() {
-            packed.further = Some(Box::new(Packed::new(robot, data.further_readings(), width)));
+            packed.further = Some(Box::new(PackedValues::new(robot, data.further_readings(), width)));
         }
         if !data.moving.times_s.is_empty() {
             packed.move_as(robot, data);
@@ -95,7 +95,7 @@ impl Packed {
     #[must_use]
     pub fn of_values(robot: &Robot, values: &[f64]) -> Self {
         let joints = robot.joints.len().max(1);
-        Packed::fill(
+        PackedValues::fill(
             robot,
             values.len() / joints,
             |_| &[],
@@ -118,7 +118,7 @@ impl Packed {
         let mut values = vec![(0.0, 0.0); rows * joints];
         let fill = |first: usize, angles: &mut [f64], values: &mut [(f64, f64)]| {
             put(first, angles);
-            lanes::cosines_and_sines(SimdLevel::best(), angles, values);
+            lanes::cosines_and_sines(SimdLevel::best_level(), angles, values);
             if kinds.contains(&JointKind::Prismatic) {
                 for (index, (packed, &value)) in values.iter_mut().zip(&*angles).enumerate() {
                     if kinds[index % joints] == JointKind::Prismatic {
@@ -137,7 +137,7 @@ impl Packed {
         }
         let bases = bases(robot, &angles, factors);
         let terms = robot.terms.iter().map(|it| (it.joint, it.term)).collect();
-        Packed {
+        PackedValues {
             joints,
             kinds,
             values,
@@ -151,7 +151,7 @@ impl Packed {
     }
 
     /// Value of a joint in a row, or in a further configuration in place of it: θ, and `(cos θ, sin θ)` or `(θ, 0)`.
-    pub(crate) fn at(&self, row: usize, further: Option<u32>, joint: usize) -> (f64, (f64, f64)) {
+    pub(crate) fn value_at(&self, row: usize, further: Option<u32>, joint: usize) -> (f64, (f64, f64)) {
         let (packed, row) = match (&self.further, further) {
             (Some(packed), Some(row)) => (&**packed, row as usize),
             _ => (self, row),
@@ -189,7 +189,7 @@ impl Packed {
         self.terms.iter().position(|it| *it == (joint, term))
     }
 
-    /// Function b of a term of a joint, at its [place](Packed::place_of), in a row or in a further configuration in place of it.
+    /// Function b of a term of a joint, at its [place](PackedValues::place_of), in a row or in a further configuration in place of it.
     pub(crate) fn basis_at(
         &self,
         row: usize,
@@ -265,7 +265,7 @@ impl<'a> Bases<'a> {
     }
 
     /// The packed functions.
-    pub(crate) fn packed(&self) -> &'a [f64] {
+    pub(crate) fn packed_functions(&self) -> &'a [f64] {
         self.bases
     }
 

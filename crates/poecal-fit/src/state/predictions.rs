@@ -3,7 +3,7 @@
 use super::side_by_side::SideBySide;
 use super::{Estimate, Linkage, RowError, Session, Sight};
 use poecal_arm::lie::Pose;
-use poecal_model::measurement::{ByQuantity, Dataset, NUMBERS, Observation, Written};
+use poecal_model::measurement::{ByQuantity, Dataset, FormulatedMeasurement, NUMBERS, Observation};
 use poecal_numerics::kernels::WIDTH;
 use poecal_numerics::threads;
 
@@ -28,7 +28,7 @@ impl Session<'_> {
         each: impl Fn(&Observation, ByQuantity<(f64, usize)>) -> T + Sync,
     ) -> Vec<T> {
         self.map_errors(rows, estimate, |observation, error, predicted| {
-            let written = Written::new(&observation.measurement, self.data.pose_residual);
+            let written = FormulatedMeasurement::new(&observation.measurement, self.data.pose_residual);
             let error = if written.is_usual() {
                 error
             } else {
@@ -36,13 +36,13 @@ impl Session<'_> {
                 written.residual(&predicted(), &mut values);
                 RowError::from_values(written.measurement, values)
             };
-            each(observation, self.alike(observation, error).squares())
+            each(observation, self.equalize_noise(observation, error).squares())
         })
     }
 
     /// An error of a row with noise of its position that is the same in all directions.
-    pub fn alike(&self, observation: &Observation, error: RowError) -> RowError {
-        self.data.noise_shape(observation).map_or(error, |shape| error.whitened(shape))
+    pub fn equalize_noise(&self, observation: &Observation, error: RowError) -> RowError {
+        self.data.noise_shape(observation).map_or(error, |shape| error.whiten(shape))
     }
 
     /// Maps each row by `each`, from its observation, its error in the device's axes (theory.md §4 (16), not whitened) and, on demand, the
@@ -83,7 +83,7 @@ impl Session<'_> {
             side_by_side.compare(self, rows);
             for (lane, &row) in rows.iter().enumerate() {
                 let observation = self.observation(row);
-                let predicted = || side_by_side.predicted(lane, observation);
+                let predicted = || side_by_side.predicted_pose(lane, observation);
                 found.push(each(observation, side_by_side.error(lane, observation), &predicted));
             }
         }
@@ -112,6 +112,6 @@ pub fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, errors: 
     }
     for (&row, error) in rows.iter().zip(errors) {
         let own = estimate.device(data.observations[row as usize].station).rotation;
-        *error = error.turned(&(estimate.device_from_base.rotation * own.transpose()));
+        *error = error.rotate(&(estimate.device_from_base.rotation * own.transpose()));
     }
 }

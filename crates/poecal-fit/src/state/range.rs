@@ -8,7 +8,7 @@ use poecal_model::measurement::Sensitivity;
 /// Zero and scale of an instrument's distances: it reads `(1 + s) |p| + o` for a target at p (theory.md §4 (15d)). For a sphere that is
 /// touched, the zero is minus its radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Range {
+pub struct RangeModel {
     /// Reading at the instrument itself, metres.
     pub zero_m: f64,
     /// Growth of the reading with the distance, less 1.
@@ -38,10 +38,10 @@ impl RangeTerm {
     }
 }
 
-impl Range {
+impl RangeModel {
     /// True if a reading is the distance itself.
     pub(crate) fn is_plain(&self) -> bool {
-        *self == Range::default()
+        *self == RangeModel::default()
     }
 
     /// Reading of the instrument for a target at this pose: below zero inside a sphere that is touched.
@@ -52,7 +52,7 @@ impl Range {
 
     /// Pose of the target at the distance that is read, in its direction.
     #[must_use]
-    pub fn seen(&self, target: &Pose) -> Pose {
+    pub fn locate_target(&self, target: &Pose) -> Pose {
         let place = target.translation;
         let direction = place.try_normalize(0.0).unwrap_or_default();
         Pose { translation: place * (1.0 + self.scale) + direction * self.zero_m, ..*target }
@@ -86,6 +86,6 @@ mod tests {
     #[test]
     fn a_zero_moves_what_is_seen_along_the_line_of_sight() {
         let target = Pose::from_translation(Vector3::new(0.0, 2.0, 0.0));
-        assert_eq!(Range { zero_m: 0.1, scale: 0.0 }.seen(&target).translation.y, 2.1);
+        assert_eq!(RangeModel { zero_m: 0.1, scale: 0.0 }.locate_target(&target).translation.y, 2.1);
     }
 }

@@ -43,7 +43,7 @@ impl Rounding {
             .iter()
             .enumerate()
             .map(|(at, kind)| {
-                let values = looked.iter().map(|row| kind.shown(data.readings(*row as usize)[at]));
+                let values = looked.iter().map(|row| kind.in_shown_unit(data.readings(*row as usize)[at]));
                 (*kind != ReadingKind::Factor).then(|| step_of(values.collect())).flatten()
             })
             .collect();
@@ -61,7 +61,7 @@ impl Rounding {
                 let mut moved = readings.to_vec();
                 moved[at] += DIFFERENCE;
                 let there = robot.forward_kinematics(&moved);
-                let own = step / kinds[at].shown(1.0) / DIFFERENCE;
+                let own = step / kinds[at].in_shown_unit(1.0) / DIFFERENCE;
                 let turn = poecal_arm::lie::rotation::log(&(there.rotation * here.rotation.transpose()));
                 place_m2 += (own * (there.translation - here.translation)).norm_squared() / 12.0;
                 turn_rad2 += (own * turn).norm_squared() / 12.0;

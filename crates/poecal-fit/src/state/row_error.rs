@@ -36,7 +36,7 @@ impl RowError {
     }
 
     /// This error plus `times` its change to another one of the same row.
-    pub(crate) fn towards(&self, other: &RowError, times: f64) -> Self {
+    pub(crate) fn interpolate(&self, other: &RowError, times: f64) -> Self {
         let mut values = self.values;
         values.iter_mut().zip(other.values).for_each(|(value, other)| *value += times * (other - *value));
         RowError { channels: self.channels, values }
@@ -64,13 +64,13 @@ impl RowError {
     #[must_use]
     pub fn length(&self, quantity: Quantity) -> Option<f64> {
         let part = self.part(quantity);
-        (!part.is_empty()).then(|| squared(part).sqrt())
+        (!part.is_empty()).then(|| squared_norm(part).sqrt())
     }
 
     /// Squared length of the error of one quantity, 0 if it was not measured.
     #[must_use]
     pub fn square(&self, quantity: Quantity) -> f64 {
-        squared(self.part(quantity))
+        squared_norm(self.part(quantity))
     }
 
     /// Squared length of the error of each quantity, and its number of values.
@@ -90,7 +90,7 @@ impl RowError {
     }
 
     /// For each component of a quantity, true if it was measured.
-    pub fn measured(&self, quantity: Quantity) -> [bool; Quantity::MOST_COMPONENTS] {
+    pub fn measured_components(&self, quantity: Quantity) -> [bool; Quantity::MOST_COMPONENTS] {
         let mut found = [false; Quantity::MOST_COMPONENTS];
         self.channels.components(quantity).for_each(|(_, component)| found[component] = true);
         found
@@ -110,14 +110,14 @@ impl RowError {
 
     /// First quantity, by which rows of one kind are compared.
     #[must_use]
-    pub fn leading(&self) -> Option<Quantity> {
+    pub fn leading_quantity(&self) -> Option<Quantity> {
         self.channels.first().map(|channel| channel.quantity)
     }
 
     /// Error of the first quantity as a vector, zero beyond its components.
     #[must_use]
     pub fn lead(&self) -> Vector3<f64> {
-        self.leading().map_or_else(Vector3::zeros, |quantity| self.vector(quantity))
+        self.leading_quantity().map_or_else(Vector3::zeros, |quantity| self.vector(quantity))
     }
 
     /// Error of all numbers that are lengths, metres: of the position, of a distance.
@@ -150,7 +150,7 @@ impl RowError {
     }
 
     /// The same error with noise of its position that is the same in all directions.
-    pub(crate) fn whitened(mut self, shape: &NoiseShape) -> Self {
+    pub(crate) fn whiten(mut self, shape: &NoiseShape) -> Self {
         shape.whiten(self.channels, self.values.as_chunks_mut::<1>().0);
         self
     }
@@ -161,7 +161,7 @@ impl RowError {
     }
 
     /// The same error in other axes, turned by a rotation; a quantity that is no vector stays.
-    pub(crate) fn turned(mut self, turn: &Matrix3<f64>) -> Self {
+    pub(crate) fn rotate(mut self, turn: &Matrix3<f64>) -> Self {
         for quantity in Quantity::ALL {
             if let [x, y, z] = &mut self.values[self.channels.range(quantity)] {
                 let turned = turn * Vector3::new(*x, *y, *z);
@@ -172,7 +172,7 @@ impl RowError {
     }
 }
 
-fn squared(part: &[f64]) -> f64 {
+fn squared_norm(part: &[f64]) -> f64 {
     match *part {
         // The order of nalgebra's norm.
         [x, y, z] => Vector3::new(x, y, z).norm_squared(),

@@ -1,7 +1,7 @@
 //! Measurements of one robot, as all steps of a calibration read them.
 
 use super::unknowns::USUAL;
-use super::{Packed, Unknowns, radian_m};
+use super::{PackedValues, Unknowns, radian_m};
 use poecal_model::measurement::{ByQuantity, Dataset, Noise, Observation};
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::unit::Unit;
@@ -14,7 +14,7 @@ pub struct Session<'a> {
     /// Measurements, in the frames of the device.
     pub data: &'a Dataset,
     /// Joint values of the measurements with sines and cosines, one row for each.
-    pub packed: &'a Packed,
+    pub packed: &'a PackedValues,
     /// Metres that a radian counts, the L of theory.md §6.
     pub length_m: f64,
     /// True if the device frame is unknown; otherwise it stays as it is.
@@ -28,7 +28,7 @@ pub struct Session<'a> {
 impl<'a> Session<'a> {
     /// A session in which a radian counts a third of the reach ([`radian_m`]).
     #[must_use]
-    pub fn new(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed, device_free: bool) -> Self {
+    pub fn new(robot: &'a Robot, data: &'a Dataset, packed: &'a PackedValues, device_free: bool) -> Self {
         let length_m = radian_m(robot, packed);
         Session { robot, data, packed, length_m, device_free, noise_ratios: &[], unknowns: &USUAL }
     }
@@ -91,7 +91,7 @@ impl<'a> Session<'a> {
     }
 
     /// Squares of a row's residual (m², rad²) in units of its variances.
-    pub fn whitened(
+    pub fn whiten_squares(
         &self,
         observation: &Observation,
         squares: ByQuantity<f64>,

@@ -2,26 +2,26 @@
 
 use nalgebra::Vector3;
 
-use super::{Linkage, Passed, RowError, Session, Sight};
+use super::{Linkage, PassedJoint, RowError, Session, Sight};
 use poecal_arm::lie::Pose;
-use poecal_model::measurement::{Clue, Kernel, NUMBERS, Observation};
-use poecal_numerics::kernels::{self as lanes, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
+use poecal_model::measurement::{InitialGuess, Kernel, NUMBERS, Observation};
+use poecal_numerics::kernels::{self as lanes, FixedMotion, FrameColumns, LaneBlock, SimdLevel, WIDTH};
 
 /// [`WIDTH`] rows of one route side by side: joint values, frames of the last link, targets in it, measurements and errors.
 pub(crate) struct SideBySide<'a> {
     linkage: &'a Linkage,
-    route: &'a [Passed],
+    route: &'a [PassedJoint],
     /// True if the joint values are those of a row, in their order.
     plain: bool,
     pub(crate) level: SimdLevel,
     joints: Vec<(bool, FixedMotion)>,
-    values: Vec<[Wide; 2]>,
-    last_links: [[Wide; 4]; 3],
+    values: Vec<[LaneBlock; 2]>,
+    last_links: [[LaneBlock; 4]; 3],
     /// The target of each row, and its pose in the last link.
     targets: [Option<usize>; WIDTH],
-    ends: Frames,
-    measured: Frames,
-    errors: [[Wide; 3]; 2],
+    ends: FrameColumns,
+    measured: FrameColumns,
+    errors: [[LaneBlock; 3]; 2],
 }
 
 impl<'a> SideBySide<'a> {
@@ -31,14 +31,14 @@ impl<'a> SideBySide<'a> {
             linkage,
             route: &linkage.tree().routes()[route],
             plain: linkage.is_plain(route),
-            level: SimdLevel::best(),
-            values: vec![[Wide::ZERO; 2]; joints.len()],
+            level: SimdLevel::best_level(),
+            values: vec![[LaneBlock::ZERO; 2]; joints.len()],
             joints,
-            last_links: [[Wide::ZERO; 4]; 3],
+            last_links: [[LaneBlock::ZERO; 4]; 3],
             targets: [None; WIDTH],
-            ends: [[Wide::ZERO; 3]; 4],
-            measured: [[Wide::ZERO; 3]; 4],
-            errors: [[Wide::ZERO; 3]; 2],
+            ends: [[LaneBlock::ZERO; 3]; 4],
+            measured: [[LaneBlock::ZERO; 3]; 4],
+            errors: [[LaneBlock::ZERO; 3]; 2],
         }
     }
 
@@ -83,8 +83,8 @@ impl<'a> SideBySide<'a> {
                 (Some(station), _) => {
                     put(&mut self.measured, lane, &(station.inverse() * measurement.pose()));
                 }
-                (None, Clue::Frame(pose)) => put(&mut self.measured, lane, &pose),
-                (None, Clue::Place([Some(x), Some(y), Some(z)])) => {
+                (None, InitialGuess::Frame(pose)) => put(&mut self.measured, lane, &pose),
+                (None, InitialGuess::Place([Some(x), Some(y), Some(z)])) => {
                     put_place(&mut self.measured, lane, &Vector3::new(x, y, z));
                 }
                 (None, _) => {}
@@ -117,20 +117,20 @@ impl<'a> SideBySide<'a> {
             }
             return RowError::from_values(measurement, values);
         }
-        let target = self.predicted(lane, seen);
+        let target = self.predicted_pose(lane, seen);
         match (self.linkage.range(seen.station), measurement.range()) {
             // The length of the read position would lose the sign of a reading below zero.
             (Some(range), Some(measured)) => {
                 values[0] = measured - range.reading(&target);
                 RowError::from_values(measurement, values)
             }
-            (Some(range), None) => RowError::new(measurement, &range.seen(&target)),
+            (Some(range), None) => RowError::new(measurement, &range.locate_target(&target)),
             (None, _) => RowError::new(measurement, &target),
         }
     }
 
     /// The predicted pose of a row's target in the frame of its own device.
-    pub(crate) fn predicted(&self, lane: usize, seen: &Observation) -> Pose {
+    pub(crate) fn predicted_pose(&self, lane: usize, seen: &Observation) -> Pose {
         let (_, end) = self.linkage.frames(Sight::from(seen));
         let from_first = self.last_link(lane) * *end;
         let station = self.linkage.station_from_first(seen.station);
@@ -139,7 +139,7 @@ impl<'a> SideBySide<'a> {
 }
 
 /// Writes one lane of frames by rows.
-fn put_rows(frames: &mut [[Wide; 4]; 3], lane: usize, pose: &Pose) {
+fn put_rows(frames: &mut [[LaneBlock; 4]; 3], lane: usize, pose: &Pose) {
     for (k, row) in frames.iter_mut().enumerate() {
         for (column, wide) in row[..3].iter_mut().enumerate() {
             wide.0[lane] = pose.rotation[(k, column)];
@@ -149,7 +149,7 @@ fn put_rows(frames: &mut [[Wide; 4]; 3], lane: usize, pose: &Pose) {
 }
 
 /// Writes one lane.
-fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
+fn put(frames: &mut FrameColumns, lane: usize, pose: &Pose) {
     let [rotation @ .., place] = frames;
     for (wide, column) in rotation.iter_mut().flatten().zip(pose.rotation.as_slice()) {
         wide.0[lane] = *column;
@@ -158,11 +158,11 @@ fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
 }
 
 /// Writes the position of one lane.
-fn put_place([.., place]: &mut Frames, lane: usize, position: &Vector3<f64>) {
+fn put_place([.., place]: &mut FrameColumns, lane: usize, position: &Vector3<f64>) {
     put_row(place, lane, position);
 }
 
-fn put_row(row: &mut [Wide; 3], lane: usize, vector: &Vector3<f64>) {
+fn put_row(row: &mut [LaneBlock; 3], lane: usize, vector: &Vector3<f64>) {
     for (wide, number) in row.iter_mut().zip(vector.as_slice()) {
         wide.0[lane] = *number;
     }
@@ -171,7 +171,7 @@ fn put_row(row: &mut [Wide; 3], lane: usize, vector: &Vector3<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::{Chain, Estimate, Packed};
+    use crate::state::{Estimate, PackedValues, RowChain};
     use poecal_arm::lie::{Screw, rotation};
     use poecal_model::measurement::{Dataset, Measurement, Quantity};
     use poecal_model::robot::{Joint, Robot};
@@ -217,13 +217,13 @@ mod tests {
                 let seen = Measurement::point(Vector3::zeros());
                 data.push(readings, None, seen).unwrap();
             }
-            let packed = Packed::from_dataset(&robot, &data);
+            let packed = PackedValues::from_dataset(&robot, &data);
             let session = Session::new(&robot, &data, &packed, false);
             for offsets in [[0.0; 4], [0.3, -0.2, 0.6, 0.1]] {
                 let estimate =
                     Estimate::new(&robot, vec![robot.home], Pose::identity()).with_offsets(&offsets);
                 let linkage = Linkage::new(&estimate);
-                let mut chain = Chain::default();
+                let mut chain = RowChain::default();
                 for level in lanes::simd_levels() {
                     for (row, last) in last_links(level, &linkage, &session).into_iter().enumerate() {
                         let values: Vec<f64> = packed
@@ -255,12 +255,12 @@ mod tests {
     fn errors_are_those_of_the_formulas_at_every_level() {
         let readings = readings();
         for robot in robots() {
-            let packed = Packed::new(&robot, &readings, 4);
+            let packed = PackedValues::new(&robot, &readings, 4);
             let targets =
                 vec![robot.home, robot.home * Pose::from_xyz_rpy([0.2, 0.0, -0.1], [0.5, 1.0, 2.0])];
             let device_from_base = Pose::from_xyz_rpy([2.0, -1.0, 0.4], [0.1, 0.2, -2.0]);
             let linkage = Linkage::new(&Estimate::new(&robot, targets, device_from_base));
-            let mut chain = Chain::default();
+            let mut chain = RowChain::default();
             let mut data = Dataset::new(robot.reading_names());
             data.targets = vec![Some("a".to_owned()), Some("b".to_owned())];
             let mut expected = Vec::new();

@@ -6,7 +6,7 @@ use poecal_model::robot::{Body, JointKind, Robot};
 
 /// Parent of an instrument's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stand {
+pub enum InstrumentMount {
     /// A body, with a frame of its own on it.
     On(Body),
     /// The frame of the target of this index: the same frame measured in two configurations.
@@ -15,7 +15,7 @@ pub enum Stand {
 
 /// A joint on the kinematic chain from an instrument to a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Passed {
+pub struct PassedJoint {
     /// Index of the joint.
     pub joint: usize,
     /// True if it is passed from its link towards the base, by `exp(-ξθ)`. In a row of two configurations such joints have the values of
@@ -28,22 +28,22 @@ pub struct Passed {
 /// The kinematic chain from an instrument on body a to a target on body b is `(T_a)⁻¹ T_b`. T is the product of exponentials from the
 /// base to the body. Joints that are on both branches cancel, unless instrument and target were in different configurations.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tree {
+pub struct KinematicTree {
     kinds: Vec<JointKind>,
     stands_on: Vec<Body>,
-    instruments: Vec<Stand>,
+    instruments: Vec<InstrumentMount>,
     targets: Vec<Body>,
     /// Different routes, and that of each pair of instrument and target: in one configuration, then in two.
-    routes: Vec<Vec<Passed>>,
+    routes: Vec<Vec<PassedJoint>>,
     of_sight: Vec<usize>,
 }
 
-impl Tree {
+impl KinematicTree {
     /// The tree of a robot, with bodies of instruments (stations) and targets in the order of the data.
     #[must_use]
-    pub fn new(robot: &Robot, instruments: Vec<Stand>, targets: Vec<Body>) -> Self {
+    pub fn new(robot: &Robot, instruments: Vec<InstrumentMount>, targets: Vec<Body>) -> Self {
         let joints = 0..robot.joints.len();
-        let none = Tree {
+        let none = KinematicTree {
             kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
             stands_on: joints.map(|joint| robot.body_before(joint)).collect(),
             instruments: Vec::new(),
@@ -51,7 +51,7 @@ impl Tree {
             routes: Vec::new(),
             of_sight: Vec::new(),
         };
-        none.with(instruments, targets)
+        none.with_bodies(instruments, targets)
     }
 
     /// Tree of a robot with the instruments and targets of a data set, by their names. An instrument without a pose in the model is on the base.
@@ -67,37 +67,44 @@ impl Tree {
             // Without further configurations there are no rows in two.
             let may_be_shared = mount.is_none() && !data.further_readings().is_empty();
             let shared = if may_be_shared { in_two() } else { None };
-            shared.map_or(Stand::On(body), |row| Stand::Target(named.unwrap_or(row.target)))
+            shared
+                .map_or(InstrumentMount::On(body), |row| InstrumentMount::Target(named.unwrap_or(row.target)))
         };
         let instruments = (0..data.station_count()).map(stand).collect();
         let place = robot.places_of_targets();
         let targets = data.targets.iter().map(|name| place(name.as_deref()).0).collect();
-        Tree::new(robot, instruments, targets)
+        KinematicTree::new(robot, instruments, targets)
     }
 
     /// The same tree with one of the instruments only.
     pub(crate) fn seen_from(&self, station: usize) -> Self {
-        let stand = self.instruments.get(station).copied().unwrap_or(Stand::On(Body::Base));
-        self.with(vec![stand], self.targets.clone())
+        let stand = self.instruments.get(station).copied().unwrap_or(InstrumentMount::On(Body::Base));
+        self.with_bodies(vec![stand], self.targets.clone())
     }
 
     /// The same tree with further instruments on the base.
     pub(crate) fn with_further_on_base(&self, further: usize) -> Self {
         let first = self.instruments.first().copied();
-        let on_base = std::iter::repeat_n(Stand::On(Body::Base), further);
-        self.with(first.into_iter().chain(on_base).collect(), self.targets.clone())
+        let on_base = std::iter::repeat_n(InstrumentMount::On(Body::Base), further);
+        self.with_bodies(first.into_iter().chain(on_base).collect(), self.targets.clone())
     }
 
     /// The same tree with one more target.
     pub(crate) fn with_target(&self, body: Body) -> Self {
         let targets = self.targets.iter().copied().chain([body]).collect();
-        self.with(self.instruments.clone(), targets)
+        self.with_bodies(self.instruments.clone(), targets)
     }
 
-    fn with(&self, instruments: Vec<Stand>, targets: Vec<Body>) -> Self {
+    fn with_bodies(&self, instruments: Vec<InstrumentMount>, targets: Vec<Body>) -> Self {
         let (kinds, stands_on) = (self.kinds.clone(), self.stands_on.clone());
-        let mut tree =
-            Tree { kinds, stands_on, instruments, targets, routes: Vec::new(), of_sight: Vec::new() };
+        let mut tree = KinematicTree {
+            kinds,
+            stands_on,
+            instruments,
+            targets,
+            routes: Vec::new(),
+            of_sight: Vec::new(),
+        };
         tree.find_routes();
         tree
     }
@@ -110,7 +117,7 @@ impl Tree {
 
     /// Parent of each instrument.
     #[must_use]
-    pub fn instruments(&self) -> &[Stand] {
+    pub fn instruments(&self) -> &[InstrumentMount] {
         &self.instruments
     }
 
@@ -122,12 +129,12 @@ impl Tree {
 
     /// Joints from an instrument to a target, in order.
     #[must_use]
-    pub fn route(&self, sight: Sight) -> &[Passed] {
+    pub fn route(&self, sight: Sight) -> &[PassedJoint] {
         &self.routes[self.route_index(sight)]
     }
 
     /// All routes that differ.
-    pub(crate) fn routes(&self) -> &[Vec<Passed>] {
+    pub(crate) fn routes(&self) -> &[Vec<PassedJoint>] {
         &self.routes
     }
 
@@ -143,10 +150,10 @@ impl Tree {
 
     /// Target in whose frame an instrument measures, if its frame is a target's.
     #[must_use]
-    pub fn shared(&self, instrument: usize) -> Option<usize> {
+    pub fn shared_target(&self, instrument: usize) -> Option<usize> {
         match self.instruments.get(instrument)? {
-            Stand::On(_) => None,
-            Stand::Target(target) => Some(*target),
+            InstrumentMount::On(_) => None,
+            InstrumentMount::Target(target) => Some(*target),
         }
     }
 
@@ -177,8 +184,8 @@ impl Tree {
             .instruments
             .iter()
             .map(|stand| match *stand {
-                Stand::On(body) => body,
-                Stand::Target(target) => self.targets[target],
+                InstrumentMount::On(body) => body,
+                InstrumentMount::Target(target) => self.targets[target],
             })
             .collect();
         for of_two in [false, true] {
@@ -189,9 +196,9 @@ impl Tree {
                         back.pop();
                         forth.pop();
                     }
-                    let back = back.into_iter().map(|joint| Passed { joint, backward: true });
-                    let forth = forth.into_iter().rev().map(|joint| Passed { joint, backward: false });
-                    let route: Vec<Passed> = back.chain(forth).collect();
+                    let back = back.into_iter().map(|joint| PassedJoint { joint, backward: true });
+                    let forth = forth.into_iter().rev().map(|joint| PassedJoint { joint, backward: false });
+                    let route: Vec<PassedJoint> = back.chain(forth).collect();
                     let known = self.routes.iter().position(|known| *known == route);
                     self.of_sight.push(known.unwrap_or(self.routes.len()));
                     if known.is_none() {
@@ -210,7 +217,7 @@ mod tests {
     #[test]
     fn a_camera_in_the_hand_passes_the_joints_backward() {
         let robot = poecal_testing::sessions::unlimited_elbow();
-        let in_hand = Tree::new(&robot, vec![Stand::On(Body::Link(5))], vec![Body::Base]);
+        let in_hand = KinematicTree::new(&robot, vec![InstrumentMount::On(Body::Link(5))], vec![Body::Base]);
         let passed = in_hand.route(Sight::from(0));
         assert!(passed.len() == 6 && passed[0].joint == 5 && passed.iter().all(|it| it.backward));
     }

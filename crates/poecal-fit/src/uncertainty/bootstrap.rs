@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::clusters::clusters;
-use super::view::View;
+use super::view::FitView;
 use super::{covariance, factor, position_information};
 use crate::state::sample_rows;
 use poecal_model::simulate::random;
@@ -35,7 +35,7 @@ pub struct Bootstrap {
 /// Draws neighbourhoods of rows with replacement. Each bootstrap sample is refitted by one step with the common factor of
 /// all rows (theory.md §9 (45)). `None` if the rows are too few.
 #[must_use]
-pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
+pub fn bootstrap(view: &FitView<'_>, seed: u64) -> Option<Bootstrap> {
     let rows = sample_rows(view.rows, SAMPLE);
     let count = (rows.len() / NEIGHBOURHOOD).min(MOST);
     if count < LEAST {
@@ -48,7 +48,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
     }
     let variance = view.variance;
     let factor = factor(&whole.gram, n, view.prior, variance)?;
-    let sample = View { rows: &rows, ..*view };
+    let sample = FitView { rows: &rows, ..*view };
     let units = clusters(&sample, count);
     let steps: Vec<Vec<f64>> = units
         .iter()
@@ -65,7 +65,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
         let mut step = vec![0.0; n];
         for _ in 0..units.len() {
             let drawn =
-                ((random::uniform(&mut generator) * units.len() as f64) as usize).min(units.len() - 1);
+                ((random::uniform_number(&mut generator) * units.len() as f64) as usize).min(units.len() - 1);
             step.iter_mut().zip(&steps[drawn]).zip(&mean).for_each(|((sum, own), mean)| *sum += own - mean);
         }
         squares += quadratic(&information, &step);

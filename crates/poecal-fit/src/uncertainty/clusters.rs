@@ -3,10 +3,10 @@
 use nalgebra::DMatrix;
 
 use super::factor;
-use super::view::View;
+use super::view::FitView;
 use poecal_model::measurement::MANY_ROWS;
 use poecal_numerics::linalg;
-use poecal_numerics::solve::{LeastSquares, Normal};
+use poecal_numerics::solve::{LeastSquares, NormalEquations};
 
 /// Significance of a figure: standard deviations beyond its mean in white noise.
 pub(crate) const SIGNIFICANT: f64 = 3.0;
@@ -16,9 +16,9 @@ const CLUSTERS: usize = 16;
 /// `Σ gᵀ H⁻¹ g` over clusters, with the gradient g of a cluster's rows, over its expectation in white noise: the cluster-robust covariance
 /// over the ordinary one, averaged over all directions (liang1986, theory.md §9 (41)). `None` if it is not significant.
 pub(crate) fn inflation(
-    view: &View<'_>,
-    whole: &Normal,
-    clusters: impl Fn(&View<'_>, usize) -> Vec<Vec<u32>>,
+    view: &FitView<'_>,
+    whole: &NormalEquations,
+    clusters: impl Fn(&FitView<'_>, usize) -> Vec<Vec<u32>>,
 ) -> Option<f64> {
     let n = whole.dim();
     if n == 0 || whole.residuals < 2 * n {
@@ -52,7 +52,7 @@ fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
 }
 
 /// About `count` clusters: rows are halved at the median of the joint that moves most in them, rows of one configuration together.
-pub(crate) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
+pub(crate) fn clusters(view: &FitView<'_>, count: usize) -> Vec<Vec<u32>> {
     let spans = view.spans(view.rows);
     let is_many = view.rows.len() > MANY_ROWS;
     let configurations = if is_many { Vec::new() } else { view.session.data.configurations(view.rows) };
@@ -88,7 +88,7 @@ pub(crate) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
 }
 
 /// About `count` clusters of consecutive rows, in the order of the data.
-pub(crate) fn in_order(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
+pub(crate) fn in_order(view: &FitView<'_>, count: usize) -> Vec<Vec<u32>> {
     let mut rows = view.rows.to_vec();
     rows.sort_unstable();
     rows.chunks(rows.len().div_ceil(count.max(1)).max(1)).map(<[u32]>::to_vec).collect()

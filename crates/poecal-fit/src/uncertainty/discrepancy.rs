@@ -1,12 +1,12 @@
 //! Model error, estimated from the residuals.
 
 use super::folds::CrossValidation;
-use super::remainder::{Attribution, Remainder};
-use super::view::View;
-use super::{clusters, neighbours, order};
+use super::residual_variance::{Attribution, ResidualVariance};
+use super::view::FitView;
+use super::{clusters, neighbours, serial_correlation};
 use poecal_model::camera::{Centre, CommonError, Picture};
 use poecal_model::measurement::{ByQuantity, Noise, Quantity};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::unit::Unit;
 
 /// Model error and noise, estimated from the residuals (theory.md §9 (40) and (41)).
@@ -32,7 +32,7 @@ pub struct Discrepancy {
 impl Discrepancy {
     /// No model error, and known noise.
     #[must_use]
-    pub fn none() -> Self {
+    pub fn zero() -> Self {
         let zero = Noise::new(0.0, 0.0);
         Discrepancy {
             scatter: 1.0,
@@ -50,20 +50,20 @@ impl Discrepancy {
 /// They count as the robot's, unless stated noise or the scatter of repeated measurements explains them and they have no structure.
 #[must_use]
 pub fn discrepancy(
-    view: &View<'_>,
-    normal: &Normal,
-    remainder: &Remainder,
+    view: &FitView<'_>,
+    normal: &NormalEquations,
+    remainder: &ResidualVariance,
     cross_validation: Option<&CrossValidation>,
 ) -> Discrepancy {
-    let lag_one = order::correlation(view);
+    let lag_one = serial_correlation::correlation(view);
     let by_place = clusters::inflation(view, normal, clusters::clusters);
     let by_time = lag_one.and_then(|_| clusters::inflation(view, normal, clusters::in_order));
-    let alike = neighbours::alike(view);
+    let alike = neighbours::correlated_quantities(view);
     let structured = by_place.is_some() || lag_one.is_some();
     let own =
-        ByQuantity::from_fn(|quantity| remainder.parts[quantity].settled(structured || alike[quantity]));
+        ByQuantity::from_fn(|quantity| remainder.parts[quantity].attribute(structured || alike[quantity]));
     let own = ByQuantity::from_fn(|quantity| match of_pictures(view, quantity) {
-        Some(common) => remainder.parts[quantity].shared(common),
+        Some(common) => remainder.parts[quantity].with_robot_part(common),
         None => own[quantity],
     });
     // A quantity that was not measured is predicted as well as the others of its unit.
@@ -94,7 +94,7 @@ pub fn discrepancy(
 }
 
 /// Standard deviation of the shared error of a picture's corners, if all rows are pictures: an error of the configuration, and no noise.
-fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
+fn of_pictures(view: &FitView<'_>, quantity: Quantity) -> Option<f64> {
     let pictures = &view.session.data.pictures;
     let is_picture = |row: &u32| pictures.of_row(*row).is_some();
     if pictures.is_empty() || !view.rows.iter().all(is_picture) {

@@ -7,12 +7,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::clusters::clusters;
-use super::view::View;
+use super::view::FitView;
 use super::{TOGETHER, covariance, factor, motions};
 use crate::analysis::ranges;
 use crate::problem::{Layout, Problem};
 use crate::state::{Estimate, Linkage, RowError, sample_rows};
-use poecal_model::measurement::{ByQuantity, Measured};
+use poecal_model::measurement::{ByQuantity, MeasuredQuantities};
 use poecal_model::simulate::random;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::LeastSquares;
@@ -49,13 +49,13 @@ pub(crate) struct Fold {
 
 /// Errors of the rows of a fold or block, predicted by the fit of the others.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LeftOut {
+pub struct FoldErrors {
     /// Name of the block.
     pub name: String,
     /// Number of rows.
     pub rows: usize,
     /// Root mean square error of each measured quantity, metres or radians.
-    pub rms: Measured<f64>,
+    pub rms: MeasuredQuantities<f64>,
     /// Growth of the squared error of lengths, such as positions, if these rows are left out. It is relative to its expectation by the
     /// covariance of the unknowns (theory.md §9 (43)).
     pub growth: f64,
@@ -67,22 +67,22 @@ pub struct OutsideRange {
     /// Number of rows.
     pub rows: usize,
     /// Root mean square error of each measured quantity, metres or radians.
-    pub rms: Measured<f64>,
+    pub rms: MeasuredQuantities<f64>,
 }
 
 /// Cross-validation of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrossValidation {
     /// Random folds, left out in turn; one entry for all of them.
-    pub random: LeftOut,
+    pub random: FoldErrors,
     /// Rows of random folds, in order, with their errors.
     pub errors: Vec<(u32, RowError)>,
     /// Rows outside the range of the others; `None` if there are none.
     pub outside: Option<OutsideRange>,
     /// Root mean square error of each measured quantity in the other rows.
-    pub inside: Measured<f64>,
+    pub inside: MeasuredQuantities<f64>,
     /// Blocks, left out in turn: the ends of each joint's range, files, groups of equal `id`.
-    pub blocked: Vec<LeftOut>,
+    pub blocked: Vec<FoldErrors>,
     /// Share of the fitted rows in the subsample of the cross-validation.
     pub sampled: f64,
 }
@@ -90,7 +90,7 @@ pub struct CrossValidation {
 impl CrossValidation {
     /// Block with the largest error.
     #[must_use]
-    pub fn worst(&self) -> Option<&LeftOut> {
+    pub fn worst_block(&self) -> Option<&FoldErrors> {
         self.blocked.iter().max_by(|a, b| a.rms.lead().total_cmp(&b.rms.lead()))
     }
 }
@@ -98,12 +98,12 @@ impl CrossValidation {
 /// Cross-validation (theory.md §9 (42) and (43)) over random folds and over blocks: the ends of every joint's range, each file and each
 /// repeated `id`. `None` if the rows are too few or leave a system that is not positive definite.
 #[must_use]
-pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
+pub fn cross_validate(view: &FitView<'_>, seed: u64) -> Option<CrossValidation> {
     let sample = sample_rows(view.rows, SAMPLE);
     if sample.len() < FEWEST_VALIDATED {
         return None;
     }
-    let downdated = Downdated::new(view, &sample)?;
+    let downdated = DowndatedEquations::new(view, &sample)?;
     let mut random = ErrorSums::default();
     let (mut inside, mut outside) = (ErrorSums::default(), ErrorSums::default());
     let mut errors: Vec<(u32, RowError)> = Vec::with_capacity(sample.len());
@@ -133,7 +133,7 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
 }
 
 /// For each row of a fold, true if it has a joint beyond the range of the other rows.
-fn outside_of_others(view: &View<'_>, sample: &[u32], fold: &[u32]) -> Vec<bool> {
+fn outside_of_others(view: &FitView<'_>, sample: &[u32], fold: &[u32]) -> Vec<bool> {
     let others: Vec<u32> = sample.iter().copied().filter(|row| !fold.contains(row)).collect();
     let ranges = ranges(&view.session, &others);
     let is_outside = |row: &u32| {
@@ -147,9 +147,9 @@ fn outside_of_others(view: &View<'_>, sample: &[u32], fold: &[u32]) -> Vec<bool>
 
 /// Parts of a subsample of at most `most` rows that are left out in turn, and the subsample. They are the ends of every joint's range,
 /// each file and each repeated `id`, clusters of neighbouring configurations, and random folds.
-pub fn parts_to_leave_out(view: &View<'_>, most: usize, seed: u64) -> (Vec<u32>, Vec<Vec<u32>>) {
+pub fn parts_to_leave_out(view: &FitView<'_>, most: usize, seed: u64) -> (Vec<u32>, Vec<Vec<u32>>) {
     let sample = sample_rows(view.rows, most);
-    let few = View { rows: &sample, ..*view };
+    let few = FitView { rows: &sample, ..*view };
     let mut parts: Vec<Vec<u32>> = blocks(&few, &sample).into_iter().map(|fold| fold.rows).collect();
     let configurations = view.session.data.configurations(&sample).len();
     parts.extend(clusters(&few, NEIGHBOURHOODS.min(configurations / 4).max(1)));
@@ -160,7 +160,7 @@ pub fn parts_to_leave_out(view: &View<'_>, most: usize, seed: u64) -> (Vec<u32>,
     (sample, parts)
 }
 
-fn random_folds(view: &View<'_>, sample: &[u32], count: usize, seed: u64) -> Vec<Fold> {
+fn random_folds(view: &FitView<'_>, sample: &[u32], count: usize, seed: u64) -> Vec<Fold> {
     // Rows of one configuration are left out together: a copy in the training rows would make its prediction trivial.
     let mut configurations = view.session.data.configurations(sample);
     random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut configurations);
@@ -169,7 +169,7 @@ fn random_folds(view: &View<'_>, sample: &[u32], count: usize, seed: u64) -> Vec
 }
 
 /// Ends of each joint's range, the rows of each file, and those of each `id` that several rows share.
-fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
+fn blocks(view: &FitView<'_>, sample: &[u32]) -> Vec<Fold> {
     let mut folds = Vec::new();
     let size = sample.len() / FOLDS;
     for (joint, _) in view.spans(sample).iter().enumerate().filter(|(_, span)| **span > 0.0) {
@@ -194,7 +194,7 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
 }
 
 /// True if the rows outside a fold still determine the device frame of each of several stations.
-fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &[u32]) -> bool {
+fn leaves_all_stations(view: &FitView<'_>, sample: &[u32], fold: &[u32]) -> bool {
     let stations = view.session.data.station_count();
     let count = |rows: &[u32], station| view.session.data.seen_from(station, rows).len();
     // Stations without fitted rows do not count.
@@ -252,15 +252,15 @@ impl ErrorSums {
         self.lengths += error.square_m2();
     }
 
-    fn rms(&self) -> Measured<f64> {
-        Measured::from_fn(|quantity| {
+    fn rms(&self) -> MeasuredQuantities<f64> {
+        MeasuredQuantities::from_fn(|quantity| {
             let (squares, count) = self.parts[quantity];
             (count > 0).then(|| (squares / count as f64).sqrt())
         })
     }
 
-    fn result(self, name: String) -> LeftOut {
-        LeftOut {
+    fn result(self, name: String) -> FoldErrors {
+        FoldErrors {
             name,
             rows: self.rows,
             rms: self.rms(),
@@ -270,17 +270,17 @@ impl ErrorSums {
 }
 
 /// Normal equations of a subsample, from which blocks of rows are removed.
-struct Downdated<'a> {
-    view: View<'a>,
+struct DowndatedEquations<'a> {
+    view: FitView<'a>,
     estimate: Estimate,
     gram: Vec<f64>,
     variance: f64,
     covariance: Vec<f64>,
 }
 
-impl<'a> Downdated<'a> {
+impl<'a> DowndatedEquations<'a> {
     /// The subsample's optimum is one step from that of all rows.
-    fn new(view: &View<'a>, sample: &[u32]) -> Option<Self> {
+    fn new(view: &FitView<'a>, sample: &[u32]) -> Option<Self> {
         let problem = view.problem(sample.to_vec());
         let normal = problem.normal(view.estimate);
         let n = problem.dim();
@@ -293,7 +293,7 @@ impl<'a> Downdated<'a> {
             .map(|(measured, prior)| measured + variance * prior)
             .collect();
         let step = linalg::cholesky_solve(&factor, &pull);
-        Some(Downdated {
+        Some(DowndatedEquations {
             view: *view,
             estimate: problem.retract(view.estimate, &step),
             covariance: covariance(&factor, variance)?,
@@ -348,7 +348,7 @@ fn moved_errors(
     let share = (SMALL_M / far).min(1.0);
     let part: Vec<f64> = step.iter().map(|it| share * it).collect();
     let after = problem.session().errors(rows, &problem.retract(estimate, &part));
-    after.iter().zip(before).map(|(after, before)| before.towards(after, 1.0 / share)).collect()
+    after.iter().zip(before).map(|(after, before)| before.interpolate(after, 1.0 / share)).collect()
 }
 
 /// Number of clusters of configurations that are left out in turn when fits are compared.
@@ -358,12 +358,12 @@ const CLUSTERS: usize = 10;
 /// each row of the data in the fit; many rows are sampled. `None` if the rows without a cluster do not determine the unknowns.
 #[must_use]
 pub fn leave_clusters_out(
-    view: &View<'_>,
+    view: &FitView<'_>,
     weights: &[f64],
     loss: impl Fn(u32, &RowError) -> f64,
 ) -> Option<f64> {
     let rows = sample_rows(view.rows, SAMPLE);
-    let sample = View { rows: &rows, ..*view };
+    let sample = FitView { rows: &rows, ..*view };
     let whole = view.problem(rows.clone()).with_weights(weights).normal(view.estimate);
     let n = whole.dim();
     let mut sum = 0.0;

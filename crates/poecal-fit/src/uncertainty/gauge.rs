@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, RowDVector};
 
 use super::motions::motions;
-use super::view::View;
+use super::view::FitView;
 use crate::problem::Layout;
 use crate::state::{Linkage, Sight, sample_rows};
 use poecal_numerics::linalg;
@@ -26,8 +26,8 @@ pub(super) struct Gauge {
 
 impl Gauge {
     /// Gauge of a fit; `None` if its rows determine all that they predict.
-    pub(super) fn from_view(view: &View<'_>, layout: &Layout) -> Option<Self> {
-        let View { session, estimate, .. } = *view;
+    pub(super) fn from_view(view: &FitView<'_>, layout: &Layout) -> Option<Self> {
+        let FitView { session, estimate, .. } = *view;
         let mut unseen = layout.base_motions(estimate, &session, view.rows);
         let grows = session.lacks_length(view.rows);
         if grows {
@@ -61,7 +61,7 @@ impl Gauge {
     }
 
     /// A covariance (row-major) with unobservable directions chosen so that predicted positions in the rows' configurations move least.
-    pub(super) fn fixed(&self, covariance: &[f64]) -> Vec<f64> {
+    pub(super) fn fix_gauge(&self, covariance: &[f64]) -> Vec<f64> {
         let n = self.directions.nrows();
         let all = DMatrix::from_row_slice(n, n, covariance);
         let left = &all - &self.directions * (&self.parts * &all);

@@ -2,37 +2,37 @@
 
 mod bootstrap;
 mod clusters;
+mod conditional;
 mod correlation;
 mod discrepancy;
 mod folds;
 mod gauge;
-mod held;
 mod information;
 mod motions;
 mod neighbours;
-mod order;
 mod pattern;
 mod prediction;
 mod prior_size;
 mod refit;
-mod remainder;
+mod residual_variance;
+mod serial_correlation;
 mod share;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
+pub use conditional::held_covariance;
 pub use correlation::Correlations;
 pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{
-    CrossValidation, FEWEST_VALIDATED, LeftOut, OutsideRange, cross_validate, leave_clusters_out,
+    CrossValidation, FEWEST_VALIDATED, FoldErrors, OutsideRange, cross_validate, leave_clusters_out,
     parts_to_leave_out,
 };
-pub use held::held_covariance;
-pub use pattern::{Pattern, strongest_pattern};
+pub use pattern::{JointPattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
-pub use refit::Refit;
-pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
+pub use refit::FrameRefit;
+pub use residual_variance::{Attribution, KindVariance, ResidualVariance, VarianceComponents, remainder};
 pub use share::Shares;
-pub use view::{PriorInformation, View};
+pub use view::{FitView, PriorInformation};
 
 use gauge::Gauge;
 use information::{ROUNDING, factor};
@@ -45,11 +45,11 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::analysis::ranges;
 use crate::problem::Layout;
-use crate::state::{Estimate, Linkage, Packed, Sight};
+use crate::state::{Estimate, Linkage, PackedValues, Sight};
 use poecal_model::measurement::{ByQuantity, Quantity};
 use poecal_model::robot::JointKind;
 use poecal_numerics::linalg::{self, Factor};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Configurations whose columns share one matrix: enough for a quick product, few enough for the cache.
 const TOGETHER: usize = 32;
@@ -78,15 +78,20 @@ impl Uncertainty {
     /// Covariance of a fit, theory.md §9 (39) and (39d), from its whitened normal equations and its unknowns. `None` if a number is not
     /// finite.
     #[must_use]
-    pub fn new(view: &View<'_>, layout: Layout, normal: &Normal, found: &Discrepancy) -> Option<Self> {
+    pub fn new(
+        view: &FitView<'_>,
+        layout: Layout,
+        normal: &NormalEquations,
+        found: &Discrepancy,
+    ) -> Option<Self> {
         let gram = &normal.gram;
         let outside = (found.extrapolation > found.scatter)
-            .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
+            .then(|| extrapolate_covariance(gram, layout.dim(), view, found.extrapolation));
         let sampled = ranges(&view.session, view.rows);
-        let covariance = own_size(inflated(gram, layout.dim(), view, found.scatter)?, normal, view);
+        let covariance = own_size(inflate_covariance(gram, layout.dim(), view, found.scatter)?, normal, view);
         let gauge = Gauge::from_view(view, &layout);
         let fixed = |covariance: Vec<f64>| match &gauge {
-            Some(gauge) => gauge.fixed(&covariance),
+            Some(gauge) => gauge.fix_gauge(&covariance),
             None => covariance,
         };
         Some(Uncertainty {
@@ -116,7 +121,7 @@ impl Uncertainty {
     /// Expected errors of a target's predictions, one for each row of joint values: theory.md §9 (40), in the axes of the first station's
     /// device frame.
     #[must_use]
-    pub fn predictions(&self, packed: &Packed, target: usize) -> Vec<PredictedError> {
+    pub fn predictions(&self, packed: &PackedValues, target: usize) -> Vec<PredictedError> {
         self.predictions_of((0..packed.rows()).map(|row| (row, target)), packed)
     }
 
@@ -125,7 +130,7 @@ impl Uncertainty {
     pub fn predictions_of(
         &self,
         rows: impl Iterator<Item = (usize, usize)>,
-        packed: &Packed,
+        packed: &PackedValues,
     ) -> Vec<PredictedError> {
         let quantiles = self.quantiles();
         let errors = self.spread::<2>(rows.map(in_first), packed).into_iter();
@@ -140,14 +145,19 @@ impl Uncertainty {
 
     /// Covariances of predicted positions alone, square metres: `P_p` of theory.md §9 (40), in the axes of the first station's device
     /// frame.
-    pub fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
+    pub fn positions(&self, packed: &PackedValues, target: usize) -> Vec<Matrix3<f64>> {
         self.spread::<1>((0..packed.rows()).map(|row| in_first((row, target))), packed).into_flattened()
     }
 
     /// Derivatives by the scaled unknowns of `Σ dᵀ p` over rows of joint values. p is the predicted position of a target in each, d a
     /// vector, both in the axes of the first station's device frame.
     #[must_use]
-    pub fn along(&self, packed: &Packed, target: usize, vectors: &[Vector3<f64>]) -> Vec<f64> {
+    pub fn derivatives_along(
+        &self,
+        packed: &PackedValues,
+        target: usize,
+        vectors: &[Vector3<f64>],
+    ) -> Vec<f64> {
         let linkage = Linkage::new(&self.estimate);
         let mut sum = DVector::zeros(self.layout.dim());
         let rows: Vec<(usize, Sight)> = (0..vectors.len()).map(|row| in_first((row, target))).collect();
@@ -160,7 +170,7 @@ impl Uncertainty {
 
     /// Distance of a configuration from the sampled range: 0 inside, 1 from a fifth of the range on. The blocks of cross-validation are a
     /// fifth of the range (theory.md §9 (41)).
-    fn outside(&self, values: &[f64]) -> f64 {
+    fn distance_outside(&self, values: &[f64]) -> f64 {
         const FULLY: f64 = 0.2;
         let joints = values.iter().zip(&self.sampled).zip(self.estimate.kinds());
         let beyond = joints.map(|((value, [least, most]), kind)| {
@@ -181,7 +191,7 @@ impl Uncertainty {
     fn spread<const PARTS: usize>(
         &self,
         rows: impl Iterator<Item = (usize, Sight)>,
-        packed: &Packed,
+        packed: &PackedValues,
     ) -> Vec<[Matrix3<f64>; PARTS]> {
         let linkage = Linkage::new(&self.estimate);
         let n = self.layout.dim();
@@ -196,7 +206,7 @@ impl Uncertainty {
             let motions = motions(&self.layout, &linkage, packed, some, PARTS);
             let spread = &motions * &inside;
             let farther: Vec<f64> =
-                some.iter().map(|&(row, _)| self.outside(packed.joint_values(row))).collect();
+                some.iter().map(|&(row, _)| self.distance_outside(packed.joint_values(row))).collect();
             let wider = beyond.as_ref().filter(|_| farther.iter().any(|share| *share > 0.0));
             let wider = wider.map(|covariance| products(&motions, &(&motions * covariance)));
             let nearer = products(&motions, &spread);
@@ -220,7 +230,7 @@ fn in_first((row, target): (usize, usize)) -> (usize, Sight) {
 /// Covariance of an estimate whose residuals scatter by `inflation` κ times as much as independent ones. With `H = N + s²Λ` and a prior Λ
 /// in the fit it is `s² H⁻¹ (κ N + s²Λ) H⁻¹`, which is `s² H⁻¹` for κ = 1. Without a prior in the fit it is `κ s² (N + κ s²Λ)⁻¹`
 /// (theory.md §9 (39)).
-fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
+fn inflate_covariance(gram: &[f64], n: usize, view: &FitView<'_>, inflation: f64) -> Option<Vec<f64>> {
     let prior = (view.prior.normal.gram.as_slice(), view.prior.is_fitted);
     inflated_by((gram, n), prior, view.variance, inflation)
 }
@@ -249,10 +259,10 @@ fn inflated_by(
 
 /// Covariance outside the sampled range, where model error is a bias: `κ s² (N + κ s²(Λ + I/(0.1 L)²))⁻¹` with the prior Λ and the length
 /// L that a radian counts (theory.md §9, below (41)).
-fn extrapolated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
+fn extrapolate_covariance(gram: &[f64], n: usize, view: &FitView<'_>, inflation: f64) -> Option<Vec<f64>> {
     const FARTHEST: f64 = 0.1;
     let variance = view.variance * inflation;
-    let mut both = view.prior.with(gram, variance);
+    let mut both = view.prior.added_to(gram, variance);
     let bound = variance / (FARTHEST * view.session.length_m).powi(2);
     both.iter_mut().step_by(n + 1).for_each(|value| *value += bound);
     covariance(&linalg::cholesky(&both, n, 0.0)?, variance)
@@ -267,7 +277,7 @@ fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
 
 /// Mean over rows of `v_kᵀ v_l`, row-major: the Q of theory.md §9 (45). `δᵀ Q δ` is the mean square distance by which a step δ moves
 /// predicted positions.
-pub fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
+pub fn position_information(view: &FitView<'_>, rows: &[u32]) -> Vec<f64> {
     let problem = view.problem(Vec::new());
     let layout = problem.layout();
     let linkage = Linkage::new(view.estimate);

@@ -3,18 +3,18 @@
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::problem::Layout;
-use crate::state::{Chain, Linkage, Packed, Sight};
+use crate::state::{Linkage, PackedValues, RowChain, Sight};
 
 /// Target twists `(v; ω)` of theory.md §9 (40), in the device's axes: one column for each scaled unknown, and for each configuration three
 /// rows (v), or with two `parts` six (v, then ω).
 pub(crate) fn motions(
     layout: &Layout,
     linkage: &Linkage,
-    packed: &Packed,
+    packed: &PackedValues,
     rows: &[(usize, Sight)],
     parts: usize,
 ) -> DMatrix<f64> {
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()];
     let height = 3 * parts * rows.len();
     let mut motions = DMatrix::zeros(height, layout.dim());

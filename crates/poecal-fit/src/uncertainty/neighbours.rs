@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::clusters::SIGNIFICANT;
-use super::view::View;
+use super::view::FitView;
 use crate::state::{sample_rows, turn_to_first};
 use poecal_model::measurement::ByQuantity;
 
@@ -13,14 +13,14 @@ const NEIGHBOURS: usize = 4000;
 
 /// For each quantity, true if the residuals of one subject in neighbouring configurations are correlated significantly (theory.md §9,
 /// *Neighbours*).
-pub(crate) fn alike(view: &View<'_>) -> ByQuantity<bool> {
+pub(crate) fn correlated_quantities(view: &FitView<'_>) -> ByQuantity<bool> {
     let pool = sample_rows(view.rows, NEIGHBOURS);
     let mut errors = view.session.errors(&pool, view.estimate);
     turn_to_first(view.session.data, &pool, view.estimate, &mut errors);
     let spans = view.spans(view.rows);
     let subjects: Vec<_> = pool.iter().map(|&row| view.session.data.subject(row)).collect();
     let step = pool.len().div_ceil(PROBES).max(1);
-    let joints = scaled(view, &spans, &pool);
+    let joints = scale_values(view, &spans, &pool);
     let mut sums: ByQuantity<PairSums> = ByQuantity::default();
     let mut distances = vec![0.0; pool.len()];
     for a in (0..pool.len()).step_by(step) {
@@ -45,7 +45,7 @@ pub(crate) fn alike(view: &View<'_>) -> ByQuantity<bool> {
 }
 
 /// Values of each joint that moves, over its sampled range.
-fn scaled(view: &View<'_>, spans: &[f64], rows: &[u32]) -> Vec<Vec<f64>> {
+fn scale_values(view: &FitView<'_>, spans: &[f64], rows: &[u32]) -> Vec<Vec<f64>> {
     let moving = spans.iter().enumerate().filter(|(_, span)| **span > 0.0);
     moving.map(|(joint, span)| rows.iter().map(|&row| view.values(row)[joint] / span).collect()).collect()
 }

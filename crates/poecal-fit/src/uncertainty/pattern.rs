@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::view::View;
+use super::view::FitView;
 use crate::analysis::{ranges, residual_variance};
-use crate::state::{Chain, Linkage, rms_m, sample_rows};
+use crate::state::{Linkage, RowChain, rms_m, sample_rows};
 use poecal_model::measurement::NUMBERS;
 use poecal_model::robot::JointKind;
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Largest number of rows of the search: more are sampled.
 const SAMPLE: usize = 4000;
@@ -23,7 +23,7 @@ const CHANCE: f64 = 25.7;
 
 /// Errors that follow a joint's position, as errors of that position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pattern {
+pub struct JointPattern {
     /// Share of the squared whitened position errors.
     pub share: f64,
     /// Root mean square of the joint's error, radians or metres.
@@ -41,7 +41,7 @@ struct ShapeSums {
 
 /// The joint (its index) whose position explains most of the squared errors, if that is significant: theory.md §9 (44).
 #[must_use]
-pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pattern)> {
+pub fn strongest_pattern(view: &FitView<'_>, normal: &NormalEquations) -> Option<(usize, JointPattern)> {
     let rows = sample_rows(view.rows, SAMPLE);
     let joints = view.session.robot.joints.len();
     let ranges = ranges(&view.session, view.rows);
@@ -52,10 +52,10 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     let rms_m = rms_m(&errors);
     let mut squares = 0.0;
     let linkage = Linkage::new(view.estimate);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     for (&row, error) in rows.iter().zip(errors) {
         let observation = view.session.observation(row);
-        let Some(quantity) = error.leading() else { continue };
+        let Some(quantity) = error.leading_quantity() else { continue };
         let sigma = view.session.noise_of(observation, view.noise)[quantity];
         chain.evaluate(&linkage, view.session.packed, row as usize, observation);
         let mut sensitivity = [[0.0; 6]; NUMBERS];
@@ -85,8 +85,8 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     }
     let variance = residual_variance(normal);
     let found = sums.iter().enumerate().filter_map(|(joint, sums)| {
-        let (explained, rms) = sums.explained(rows.len())?;
-        let pattern = Pattern { share: explained / squares, rms };
+        let (explained, rms) = sums.explained_squares(rows.len())?;
+        let pattern = JointPattern { share: explained / squares, rms };
         (explained > CHANCE * variance && pattern.share > SHARE).then_some((joint, pattern))
     });
     found.max_by(|a, b| a.1.share.total_cmp(&b.1.share))
@@ -120,7 +120,7 @@ impl ShapeSums {
     }
 
     /// Squares that the best amplitudes explain, `R_j` of theory.md §9 (44), and the root mean square of that error of the joint.
-    fn explained(&self, rows: usize) -> Option<(f64, f64)> {
+    fn explained_squares(&self, rows: usize) -> Option<(f64, f64)> {
         let scale = (0..SHAPES).map(|i| self.gram[i * SHAPES + i]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&self.gram, SHAPES, 1e-9 * scale)?;
         let amplitudes = linalg::cholesky_solve(&factor, &self.gradient);

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::information::factor;
-use super::view::View;
+use super::view::FitView;
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Weight of the assumption that deviations have the size of the prior, as a number of deviations.
 const BELIEVED: f64 = 2.0;
@@ -17,7 +17,7 @@ const NONE: f64 = 1e-12;
 const STEPS: usize = 40;
 
 /// A part of the prior, with its part of the covariance.
-struct Part {
+struct PriorPart {
     information: DMatrix<f64>,
     /// `s⁴ H⁻¹ Λ H⁻¹`.
     covariance: DMatrix<f64>,
@@ -29,7 +29,7 @@ struct Part {
 
 /// A covariance (row-major) with the parts of the prior scaled to the sizes of the deviations: (39d). The input is the covariance with the
 /// prior's sizes, and the normal equations of the measurements.
-pub(super) fn own_size(covariance: Vec<f64>, measured: &Normal, view: &View<'_>) -> Vec<f64> {
+pub(super) fn own_size(covariance: Vec<f64>, measured: &NormalEquations, view: &FitView<'_>) -> Vec<f64> {
     let n = measured.gradient.len();
     let prior = view.prior;
     let Some(factor) = factor(&measured.gram, n, prior, view.variance).filter(|_| prior.is_fitted) else {
@@ -42,7 +42,7 @@ pub(super) fn own_size(covariance: Vec<f64>, measured: &Normal, view: &View<'_>)
     let step = &formal * pull;
     let mut full = DMatrix::from_row_slice(n, n, &covariance);
     let parts = prior.parts.iter().filter(|part| part.gram.iter().any(|value| *value > 0.0));
-    let mut parts: Vec<Part> = parts.map(|part| Part::new(part, &formal, &step)).collect();
+    let mut parts: Vec<PriorPart> = parts.map(|part| PriorPart::new(part, &formal, &step)).collect();
     let noise = parts.iter().fold(full.clone(), |noise, part| noise - &part.covariance);
     for part in &mut parts {
         part.of_noise = part.information.dot(&noise).max(0.0);
@@ -54,18 +54,18 @@ pub(super) fn own_size(covariance: Vec<f64>, measured: &Normal, view: &View<'_>)
     (&full + full.transpose()).scale(0.5).as_slice().to_vec()
 }
 
-impl Part {
-    fn new(part: &Normal, formal: &DMatrix<f64>, step: &DVector<f64>) -> Self {
+impl PriorPart {
+    fn new(part: &NormalEquations, formal: &DMatrix<f64>, step: &DVector<f64>) -> Self {
         let n = step.len();
         let information = DMatrix::from_fn(n, n, |i, j| part.gram[i.min(j) * n + i.max(j)]);
         let along: f64 = part.gradient.iter().zip(step.iter()).map(|(pull, step)| pull * step).sum();
         let found = 2.0 * part.cost - 2.0 * along + step.dot(&(&information * step));
         let covariance = formal * &information * formal;
-        Part { information, covariance, found: found.max(0.0), of_noise: 0.0, size: 1.0 }
+        PriorPart { information, covariance, found: found.max(0.0), of_noise: 0.0, size: 1.0 }
     }
 
     /// Expected square for deviations of the size of the prior: the trace of `(I - P)²`.
-    fn determined(&self, formal: &DMatrix<f64>) -> f64 {
+    fn determined_part(&self, formal: &DMatrix<f64>) -> f64 {
         // Unknowns without information in the part are no directions of it.
         let own: Vec<usize> =
             (0..self.information.nrows()).filter(|&at| self.information[(at, at)] > 0.0).collect();
@@ -79,8 +79,8 @@ impl Part {
 }
 
 /// Estimates the sizes of all parts, each with those of the others.
-fn settle(parts: &mut [Part], formal: &DMatrix<f64>) {
-    let determined: Vec<f64> = parts.iter().map(|part| part.determined(formal)).collect();
+fn settle(parts: &mut [PriorPart], formal: &DMatrix<f64>) {
+    let determined: Vec<f64> = parts.iter().map(|part| part.determined_part(formal)).collect();
     for _ in 0..STEPS {
         for at in 0..parts.len() {
             let others = (0..parts.len()).filter(|&other| other != at);

@@ -16,7 +16,7 @@ const SMALL: f64 = 1e-12;
 
 /// A refit of device frame and targets: its rows, unknowns and optimum.
 #[derive(Clone, Copy, Debug)]
-pub struct Refit<'a> {
+pub struct FrameRefit<'a> {
     /// Robot and rows.
     pub session: Session<'a>,
     /// Refitted device frame and targets.
@@ -34,8 +34,8 @@ impl Uncertainty {
     /// theory.md §9, *Coverage*. It is written as a covariance of more unknowns: the refitted ones follow the errors of the kept
     /// ones. `None` if the refitted unknowns are not determined.
     #[must_use]
-    pub fn refitted(&self, refit: &Refit<'_>) -> Option<Uncertainty> {
-        let (kept, places) = self.kept(refit);
+    pub fn after_refit(&self, refit: &FrameRefit<'_>) -> Option<Uncertainty> {
+        let (kept, places) = self.kept_parameters(refit);
         let parameters: Vec<Parameter> = kept.iter().chain(refit.free).copied().collect();
         let layout = Layout::new(parameters.clone(), self.length_m);
         let estimate =
@@ -88,7 +88,7 @@ impl Uncertainty {
     }
 
     /// Parameters that stay as calibrated, targets by their numbers among the rows', and the places of their unknowns.
-    fn kept(&self, refit: &Refit<'_>) -> (Vec<Parameter>, Vec<usize>) {
+    fn kept_parameters(&self, refit: &FrameRefit<'_>) -> (Vec<Parameter>, Vec<usize>) {
         let targets = refit.targets;
         let is_refitted = |parameter: &Parameter| {
             let subject = parameter.model().subject();

@@ -1,6 +1,6 @@
 //! Shares of the measurements and of the prior in an estimate.
 
-use super::{View, factor};
+use super::{FitView, factor};
 use poecal_numerics::linalg::{self, Factor};
 
 /// Shares of the measurements and of the prior in the information on functions of the unknowns (theory.md §9 (39a)).
@@ -13,7 +13,7 @@ pub struct Shares<'a> {
 
 impl<'a> Shares<'a> {
     /// Shares of a fit; `None` if it contained no prior.
-    pub fn new(view: &View<'_>, gram: &'a [f64], n: usize) -> Option<Self> {
+    pub fn new(view: &FitView<'_>, gram: &'a [f64], n: usize) -> Option<Self> {
         let factor = factor(gram, n, view.prior, view.variance).filter(|_| view.prior.is_fitted)?;
         Some(Shares { gram, n, factor })
     }

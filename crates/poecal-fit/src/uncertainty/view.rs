@@ -7,18 +7,18 @@ use crate::parameters::Parameter;
 use crate::problem::{Layout, Prior, Problem};
 use crate::state::{Estimate, Session, Sight};
 use poecal_model::measurement::{ByQuantity, Noise};
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 
 /// Prior of the unknowns: its information and gradient at the optimum, in the units of the scaled unknowns (metres), not whitened. The Λ
 /// of theory.md §6 (27a).
 #[derive(Clone, Debug)]
 pub struct PriorInformation {
     /// Upper triangle of the information, 1/m², and the gradient.
-    pub normal: Normal,
+    pub normal: NormalEquations,
     /// True if the fit contained the prior; if not, it only bounds undetermined directions.
     pub is_fitted: bool,
     /// Parts for the joints' axes and for their terms; empty for a prior that the fit did not contain.
-    pub parts: Vec<Normal>,
+    pub parts: Vec<NormalEquations>,
     /// Weight of the prior in the fit relative to whitened residuals; `None` if that was the variance of these.
     pub weight: Option<f64>,
 }
@@ -34,7 +34,7 @@ impl PriorInformation {
             return found;
         }
         let n = layout.dim();
-        let mut normal = Normal::new(n);
+        let mut normal = NormalEquations::new(n);
         let information = 1.0 / (PLAUSIBLE * length_m).powi(2);
         normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
         PriorInformation { normal, is_fitted: false, parts: Vec::new(), weight: None }
@@ -44,7 +44,7 @@ impl PriorInformation {
     #[must_use]
     pub fn of_weight((prior, weight): (&Prior, f64), estimate: &Estimate, layout: &Layout) -> Self {
         let of = |prior: &Prior| {
-            let mut normal = Normal::new(layout.dim());
+            let mut normal = NormalEquations::new(layout.dim());
             prior.add(estimate, layout, weight, &mut normal);
             normal
         };
@@ -54,8 +54,13 @@ impl PriorInformation {
 
     /// No information of `n` unknowns.
     #[must_use]
-    pub fn none(n: usize) -> Self {
-        PriorInformation { normal: Normal::new(n), is_fitted: false, parts: Vec::new(), weight: None }
+    pub fn zero(n: usize) -> Self {
+        PriorInformation {
+            normal: NormalEquations::new(n),
+            is_fitted: false,
+            parts: Vec::new(),
+            weight: None,
+        }
     }
 
     /// The same information with directions that are a choice, such as motions of the base without effect: as if they were known.
@@ -74,14 +79,14 @@ impl PriorInformation {
 
     /// Upper triangle of `N + s²Λ`, the H of theory.md §9 (39), from that of N and the variance s² of the whitened residuals.
     #[must_use]
-    pub fn with(&self, gram: &[f64], variance: f64) -> Vec<f64> {
+    pub fn added_to(&self, gram: &[f64], variance: f64) -> Vec<f64> {
         gram.iter().zip(&self.normal.gram).map(|(measured, prior)| measured + variance * prior).collect()
     }
 }
 
 /// Session, rows, unknowns and optimum of a fit.
 #[derive(Clone, Copy, Debug)]
-pub struct View<'a> {
+pub struct FitView<'a> {
     /// Robot and measurements.
     pub session: Session<'a>,
     /// Rows of the fit.
@@ -100,7 +105,7 @@ pub struct View<'a> {
     pub estimate: &'a Estimate,
 }
 
-impl<'a> View<'a> {
+impl<'a> FitView<'a> {
     /// The problem of some of the rows.
     pub(crate) fn problem(&self, rows: Vec<u32>) -> Problem<'a> {
         Problem::new(self.session, rows, self.free.to_vec(), self.noise)

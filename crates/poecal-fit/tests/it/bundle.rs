@@ -3,16 +3,16 @@
 use nalgebra::DVector;
 use poecal_fit::parameters::{DeviceFrame, Parameter, TargetFrame, screw_axes};
 use poecal_fit::problem::{Bundle, Problem};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session};
 use poecal_model::camera::{Centre, CommonError, Distortion, Lens, PictureUnknown, PictureUnknowns};
 use poecal_model::measurement::Noise;
-use poecal_model::simulate::{Photographed, PictureSimulation, Simulation, elbow};
+use poecal_model::simulate::{PictureSimulation, SimulatedPictures, Simulation, elbow};
 use poecal_numerics::solve::LeastSquares as _;
 
-fn photographed(in_hand: bool, noise_px: f64) -> Photographed {
+fn photograph_robot(in_hand: bool, noise_px: f64) -> SimulatedPictures {
     let session =
         Simulation { count: 10, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
-    let usual = PictureSimulation::usual(session, in_hand);
+    let usual = PictureSimulation::with_usual_camera(session, in_hand);
     let distortion = Distortion::Brown([-0.1, 0.02, 1e-4, 1e-4, 0.0, 0.0, 0.0, 0.0]);
     let lens = Lens { distortion, ..usual.lens };
     let mut made = PictureSimulation { lens, noise_px, ..usual }.run(&elbow()).unwrap();
@@ -22,7 +22,7 @@ fn photographed(in_hand: bool, noise_px: f64) -> Photographed {
 }
 
 /// Nominal axes, with camera and board at their poses.
-fn start(made: &Photographed) -> Estimate {
+fn start(made: &SimulatedPictures) -> Estimate {
     let held = made.nominal.home * made.tip_from_held;
     Estimate::new(&made.nominal, vec![held], made.base_from_other.inverse())
 }
@@ -55,8 +55,8 @@ const ALL: [PictureUnknown; 3] =
 fn the_gradient_is_that_of_differences() {
     let mut worst: f64 = 0.0;
     for in_hand in [true, false] {
-        let made = photographed(in_hand, 0.3);
-        let packed = Packed::from_dataset(&made.nominal, &made.data);
+        let made = photograph_robot(in_hand, 0.3);
+        let packed = PackedValues::from_dataset(&made.nominal, &made.data);
         let session = Session::new(&made.nominal, &made.data, &packed, true);
         let start = start(&made);
         let bundle = bundle(session, &start, &ALL, CommonError::NONE);
@@ -93,8 +93,8 @@ fn the_gradient_is_that_of_differences() {
 fn what_corners_share_is_eliminated() {
     let mut worst: f64 = 0.0;
     for (in_hand, about) in [(true, Centre::Board), (true, Centre::Camera), (false, Centre::Camera)] {
-        let made = photographed(in_hand, 0.3);
-        let packed = Packed::from_dataset(&made.nominal, &made.data);
+        let made = photograph_robot(in_hand, 0.3);
+        let packed = PackedValues::from_dataset(&made.nominal, &made.data);
         let session = Session::new(&made.nominal, &made.data, &packed, true);
         let start = start(&made);
         let common = CommonError { shift_m: 1e-3, turn_rad: 2e-3, about, corners: 1.0 };
@@ -106,14 +106,14 @@ fn what_corners_share_is_eliminated() {
         // The rows of the session, whitened with the same error, have the robot's part.
         let mut data = made.data.clone();
         data.pictures.common = common;
-        let (linkage, mut chain) = (Linkage::new(&start), Chain::default());
+        let (linkage, mut chain) = (Linkage::new(&start), RowChain::default());
         for at in 0..data.pictures.all.len() {
             let picture = &data.pictures.all[at];
             let row = picture.row as usize;
             chain.evaluate(&linkage, &packed, row, &data.observations[row]);
-            let pose = picture.directed(&chain.target);
+            let pose = picture.directed_measurement(&chain.target);
             let view = data.pictures.view(picture).unwrap();
-            let mut sighting = view.near(&pose).unwrap();
+            let mut sighting = view.sighting_near(&pose).unwrap();
             sighting.camera_from_board = pose;
             sighting.information = view.information(&pose);
             data.state_picture(at, &sighting);
@@ -139,8 +139,8 @@ fn what_corners_share_is_eliminated() {
 
 #[test]
 fn a_bundle_finds_the_lens() {
-    let made = photographed(true, 0.01);
-    let packed = Packed::from_dataset(&made.nominal, &made.data);
+    let made = photograph_robot(true, 0.01);
+    let packed = PackedValues::from_dataset(&made.nominal, &made.data);
     let mut data = made.data.clone();
     let truth = data.pictures.cameras[0].lens;
     data.pictures.cameras[0].lens.focal_px = [1510.0, 1490.0];
@@ -150,7 +150,7 @@ fn a_bundle_finds_the_lens() {
     let numbers = numbers(session, &lens);
     let found =
         bundle(session, &start, &lens, CommonError::NONE).solve(&start, &DVector::zeros(numbers.count()));
-    let (cameras, _) = numbers.at(&found.numbers);
+    let (cameras, _) = numbers.apply_step(&found.numbers);
     let off = (cameras[0].lens.focal_px[0] - truth.focal_px[0]).abs();
     println!("cost {:.3}, {} passes, focal length off by {off:.3} px", found.cost, found.passes);
     // 480 numbers with noise of 0.01 px come to 0.27, the prior of the focal lengths, a third of a deviation away, to 0.06.

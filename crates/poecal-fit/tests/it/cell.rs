@@ -4,21 +4,22 @@
 use crate::reference;
 use nalgebra::Vector3;
 use poecal_arm::lie::{Freedom, Pose, Screw, rotation};
-use poecal_fit::analysis::{Setup, identifiability};
+use poecal_fit::analysis::{AnalysisSetup, identifiability};
 use poecal_fit::parameters::{
     ClockUnknown, DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace, ValueTerm, screw_axes,
 };
 use poecal_fit::problem::Problem;
 use poecal_fit::state::{
-    Chain, ClockChange, ClockTerm, Estimate, Linkage, Packed, Range, RangeTerm, Session, delivered,
+    ClockChange, ClockTerm, Estimate, Linkage, PackedValues, RangeModel, RangeTerm, RowChain, Session,
+    nominal_estimate,
 };
 use poecal_model::measurement::{Dataset, Measurement, NUMBERS, Noise, Observation};
 use poecal_model::robot::{
-    Body, Gives, Gravity, Joint, JointKind, JointTerm, Mount, Robot, Statics, Term, TermKind,
+    Body, CompliantDirections, Gravity, Joint, JointKind, JointTerm, Mount, Robot, Statics, Term, TermKind,
 };
 use poecal_model::simulate::random;
 use poecal_numerics::solve::LeastSquares as _;
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 use std::f64::consts::PI;
@@ -80,7 +81,7 @@ struct Cell {
 }
 
 fn place(generator: &mut ChaCha8Rng, scale: f64) -> Pose {
-    let turn = rotation::exp(&(random::direction(generator) * PI * random::uniform(generator)));
+    let turn = rotation::exp(&(random::direction(generator) * PI * random::uniform_number(generator)));
     Pose::new(turn, random::direction(generator) * scale)
 }
 
@@ -176,7 +177,7 @@ fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
     Parameter::DeviceFrame(if freedom == Freedom::FRAME {
         DeviceFrame::new(station, about)
     } else {
-        DeviceFrame::showing(station, freedom)
+        DeviceFrame::from_freedom(station, freedom)
     })
 }
 
@@ -184,7 +185,7 @@ fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
 struct Measured {
     robot: Robot,
     data: Dataset,
-    packed: Packed,
+    packed: PackedValues,
     estimate: Estimate,
     free: Vec<Parameter>,
 }
@@ -202,7 +203,7 @@ impl Measured {
                     .joints
                     .iter()
                     .filter(|joint| joint.give_of.is_none())
-                    .map(|joint| span(joint) * (2.0 * random::uniform(&mut generator) - 1.0))
+                    .map(|joint| span(joint) * (2.0 * random::uniform_number(&mut generator) - 1.0))
                     .collect()
             };
             let from = it.apart.then(|| data.push_further(&readings()).unwrap());
@@ -211,12 +212,12 @@ impl Measured {
             let observation = Observation { station, from, ..Observation::new(target, measurement) };
             data.push_observation(&readings(), observation).unwrap();
         }
-        let packed = Packed::from_dataset(&robot, &data);
-        let mut estimate = delivered(&robot, &data);
+        let packed = PackedValues::from_dataset(&robot, &data);
+        let mut estimate = nominal_estimate(&robot, &data);
         if cell.sees.iter().all(|it| it.instrument.is_none()) {
             estimate.device_from_base = place(&mut generator, 0.9);
         }
-        let (linkage, mut chain) = (Linkage::new(&estimate), Chain::default());
+        let (linkage, mut chain) = (Linkage::new(&estimate), RowChain::default());
         for row in 0..rows {
             chain.evaluate(&linkage, &packed, row, &data.observations[row]);
             let turn = rotation::exp(&(random::direction(&mut generator) * off));
@@ -246,20 +247,21 @@ impl Measured {
 }
 
 /// The same cell with joints that sag, wobble and tilt, with coefficients that are not zero.
-fn deviating(cell: &Cell) -> Cell {
+fn deviate_cell(cell: &Cell) -> Cell {
     let all: Vec<usize> = (0..cell.robot.joints.len()).collect();
     // All directions are used for the shortest arm, whose terms are fewest.
-    let directions = if all.len() <= 4 { Gives::All } else { Gives::Tilting };
-    let (mut robot, _) = cell.robot.giving(&all, directions);
+    let directions = if all.len() <= 4 { CompliantDirections::All } else { CompliantDirections::Tilting };
+    let (mut robot, _) = cell.robot.with_compliance(&all, directions);
     let gravity = Gravity::of_unit_weights(&robot, Vector3::new(0.2, -0.1, -0.9));
     let weights = gravity.weights.len();
     robot.gravity = Some(gravity);
     let statics = Statics::new(&robot).unwrap();
-    let harmonics = (1..3).flat_map(|order| [TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order)));
+    let harmonics =
+        (1..3).flat_map(|order| [TermKind::Sine, TermKind::Cosine].map(|it| it.with_number(order)));
     let mut terms = Vec::new();
     for (joint, it) in robot.joints.iter().enumerate() {
         let sags = (0..weights).filter(|&weight| statics.is_carried(joint, weight));
-        let sags = sags.map(|weight| TermKind::Sag.at(weight));
+        let sags = sags.map(|weight| TermKind::Sag.with_index(weight));
         let ratio = it.give_of.is_none().then_some(Term::RATIO);
         for (k, term) in harmonics.clone().chain(sags).chain(ratio).enumerate() {
             terms.push(JointTerm { joint, term, coefficient: 1e-3 * (1 + (joint + 3 * k) % 5) as f64 });
@@ -276,7 +278,7 @@ fn with_terms(made: &Measured, terms: impl Iterator<Item = (usize, Term)>) -> Ve
     free.extend(
         terms.map(|(joint, term)| Parameter::ValueTerm(ValueTerm { joint, kind: kinds[joint], term })),
     );
-    if made.estimate.tree.shared(0).is_none() {
+    if made.estimate.tree.shared_target(0).is_none() {
         free.insert(0, device(&made.data, 0, Vector3::new(0.2, 0.1, 0.0)));
     }
     free
@@ -291,7 +293,8 @@ fn sensitivities_of_every_way_are_those_of_differences() {
         // Terms of every joint's value, at coefficients that are not zero.
         let mut estimate = made.estimate.clone();
         let joints = 0..made.robot.joints.len();
-        let terms: Vec<_> = joints.flat_map(|joint| Term::plain().map(move |term| (joint, term))).collect();
+        let terms: Vec<_> =
+            joints.flat_map(|joint| Term::unnumbered().map(move |term| (joint, term))).collect();
         for &(joint, term) in &terms {
             let k = usize::from(term == Term::RATIO);
             *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
@@ -314,7 +317,7 @@ fn sensitivities_of_every_kind_are_those_of_differences() {
             let mut free = with_terms(&made, std::iter::empty());
             if name == "changes" {
                 estimate.ranges =
-                    vec![Range { zero_m: 0.2, scale: 0.03 }, Range { zero_m: -0.1, scale: -0.01 }];
+                    vec![RangeModel { zero_m: 0.2, scale: 0.03 }, RangeModel { zero_m: -0.1, scale: -0.01 }];
                 let terms = RangeTerm::ALL.into_iter();
                 let ranges = terms.flat_map(|term| [0, 1].map(|station| RangeUnknown { station, term }));
                 free.extend(ranges.map(Parameter::RangeUnknown));
@@ -330,7 +333,7 @@ fn sensitivities_of_what_joints_do_are_those_of_differences() {
     // For the torso, which has hundreds of terms, only the case with all chains is tested.
     let all_ways = |cell: &Cell| cell.robot.is_serial() || cell.name == "floor and chest";
     for cell in cells().into_iter().filter(all_ways) {
-        let made = Measured::new(&deviating(&cell), 24, 0.05);
+        let made = Measured::new(&deviate_cell(&cell), 24, 0.05);
         let terms = made.robot.terms.iter().map(|it| (it.joint, it.term));
         let mut free = with_terms(&made, terms);
         let is_give = |joint: usize| made.robot.joints[joint].give_of.is_some();
@@ -347,13 +350,14 @@ fn sensitivities_of_clocks_are_those_of_differences() {
         let mut generator = ChaCha8Rng::seed_from_u64(78);
         let width = made.data.reading_names().len();
         for row in 0..made.data.len() {
-            let rates: Vec<f64> = (0..width).map(|_| 2.0 * random::uniform(&mut generator) - 1.0).collect();
+            let rates: Vec<f64> =
+                (0..width).map(|_| 2.0 * random::uniform_number(&mut generator) - 1.0).collect();
             // Every fifth row was measured at rest.
             if row % 5 != 4 {
                 made.data.state_motion(row, &rates, row as f64 / 24.0 - 0.5);
             }
         }
-        made.packed = Packed::from_dataset(&made.robot, &made.data);
+        made.packed = PackedValues::from_dataset(&made.robot, &made.data);
         let mut estimate = made.estimate.clone();
         let stations = 0..made.data.station_count();
         estimate.clocks = stations
@@ -385,14 +389,14 @@ fn compare(made: &Measured, estimate: &Estimate, free: Vec<Parameter>, name: &st
         };
         let difference = (8.0 * (cost(1.0) - cost(-1.0)) - (cost(2.0) - cost(-2.0))) / (12.0 * STEP);
         // The gradient is that of the residuals' sign: `Jᵀe` with J of the prediction.
-        worst = larger(worst, (difference + normal.gradient[unknown]).abs());
-        size = larger(size, normal.gradient[unknown].abs());
+        worst = larger_or_nan(worst, (difference + normal.gradient[unknown]).abs());
+        size = larger_or_nan(size, normal.gradient[unknown].abs());
     }
     println!("{name:22} {n:3} unknowns: {:.1e} of the gradient", worst / size);
     assert!(worst < 1e-8 * size, "{name}: {:e}", worst / size);
 
     let by_rows = reference::normal(&problem, estimate);
-    let largest = (0..n).map(|k| by_rows.gram[k * n + k]).fold(0.0, larger);
+    let largest = (0..n).map(|k| by_rows.gram[k * n + k]).fold(0.0, larger_or_nan);
     let scale = |k: usize| by_rows.gram[k * n + k].sqrt().max(1e-9);
     for (a, b) in (0..n).flat_map(|a| (a..n).map(move |b| (a, b))) {
         let apart = (normal.gram[a * n + b] - by_rows.gram[a * n + b]).abs();
@@ -409,8 +413,13 @@ fn ranks_are_those_of_the_closed_form() {
         let problem = made.problem(made.free.clone());
         let rows = made.data.all_rows();
         let session = Session::new(&made.robot, &made.data, &made.packed, false).with_length(0.5);
-        let setup =
-            Setup { session, rows: &rows, estimate: &made.estimate, layout: problem.layout(), noise: NOISE };
+        let setup = AnalysisSetup {
+            session,
+            rows: &rows,
+            estimate: &made.estimate,
+            layout: problem.layout(),
+            noise: NOISE,
+        };
         let found = identifiability(&setup, &problem.normal(&made.estimate).gram, 1.0);
         println!("{:22} {:?}: rank {} of {}", cell.name, made.robot.joints.len(), found.rank, problem.dim());
         for direction in found.unidentifiable.iter().chain(&found.structural) {
@@ -421,13 +430,13 @@ fn ranks_are_those_of_the_closed_form() {
 }
 
 fn of_order(order: usize) -> [Term; 2] {
-    [TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order))
+    [TermKind::Sine, TermKind::Cosine].map(|it| it.with_number(order))
 }
 
 /// A robot of revolute joints, each with compliant joints in all directions, and harmonics of orders 1 and 2.
 fn giving_everywhere(count: usize) -> Robot {
     let rigid = chain(&"r".repeat(count), 41);
-    let (mut robot, _) = rigid.giving(&(0..count).collect::<Vec<_>>(), Gives::All);
+    let (mut robot, _) = rigid.with_compliance(&(0..count).collect::<Vec<_>>(), CompliantDirections::All);
     let orders = [1, 2].into_iter().flat_map(of_order);
     let of_joint = |joint: usize| orders.clone().map(move |term| JointTerm { joint, term, coefficient: 0.0 });
     robot.terms = (0..robot.joints.len()).flat_map(of_joint).collect();
@@ -499,7 +508,7 @@ fn what_joints_turn_is_told_from_their_screws() {
             let problem = made.problem(with_terms(&made, terms.into_iter()));
             let rows = made.data.all_rows();
             let session = Session::new(&made.robot, &made.data, &made.packed, false).with_length(0.5);
-            let setup = Setup {
+            let setup = AnalysisSetup {
                 session,
                 rows: &rows,
                 estimate: &made.estimate,
@@ -521,7 +530,7 @@ fn errors_of_every_way_are_measured_minus_predicted() {
         let made = Measured::new(&cell, 31, 0.05);
         let session = Session::new(&made.robot, &made.data, &made.packed, false);
         let errors = session.errors(&made.data.all_rows(), &made.estimate);
-        let (linkage, mut chain) = (Linkage::new(&made.estimate), Chain::default());
+        let (linkage, mut chain) = (Linkage::new(&made.estimate), RowChain::default());
         for (row, error) in errors.iter().enumerate() {
             let seen = &made.data.observations[row];
             chain.evaluate(&linkage, &made.packed, row, seen);

@@ -5,11 +5,11 @@ use nalgebra::{Matrix6, Vector3};
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_fit::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal_fit::problem::{Layout, Problem};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session, Sight};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session, Sight};
 use poecal_model::measurement::{Dataset, Measurement, Noise};
 use poecal_model::robot::{Joint, Robot, Term};
 use poecal_numerics::solve::LeastSquares;
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use std::f64::consts::PI;
 
 /// Accuracy of the differences below: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
@@ -74,7 +74,7 @@ fn estimate(robot: &Robot) -> Estimate {
 struct Row {
     robot: Robot,
     data: Dataset,
-    packed: Packed,
+    packed: PackedValues,
 }
 
 impl Row {
@@ -86,8 +86,8 @@ impl Row {
         (make, station): (Measure, usize),
         turn: f64,
     ) -> Self {
-        let packed = Packed::new(robot, readings, readings.len());
-        let mut chain = Chain::default();
+        let packed = PackedValues::new(robot, readings, readings.len());
+        let mut chain = RowChain::default();
         chain.evaluate(&Linkage::new(estimate), &packed, 0, Sight { station, target: 0, from: None });
         let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turn));
         let seen = Pose::new(
@@ -109,7 +109,7 @@ impl Row {
     /// The whitened residual.
     fn residual(&self, estimate: &Estimate) -> Vec<f64> {
         let measurement = self.data.observations[0].measurement;
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
         let mut out = vec![0.0; measurement.dim()];
         measurement.residual(&chain.target, &mut out);
@@ -119,7 +119,7 @@ impl Row {
 
     /// The whitened sensitivity of the prediction, one column an unknown.
     fn columns(&self, estimate: &Estimate, layout: &Layout) -> Vec<Vec<f64>> {
-        let mut chain = Chain::default();
+        let mut chain = RowChain::default();
         chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
         let measurement = self.data.observations[0].measurement;
         let mut columns = vec![Vec::new(); layout.dim()];
@@ -184,12 +184,12 @@ fn jacobians_agree_with_differences() {
                     for (unknown, column) in row.columns(&estimate, &layout).iter().enumerate() {
                         let numeric = row.differences(&estimate, &layout, unknown, step);
                         let floor = ROUNDING / step / RELATIVE;
-                        worst = larger(worst, distance(column, &numeric) / norm(column).max(floor));
+                        worst = larger_or_nan(worst, distance(column, &numeric) / norm(column).max(floor));
                     }
                 }
             }
             println!("{measurement:12} by {name:13} {worst:.1e}");
-            largest = larger(largest, worst);
+            largest = larger_or_nan(largest, worst);
         }
     }
     assert!(largest < RELATIVE, "{largest:e}");
@@ -211,9 +211,9 @@ fn normal_information_is_made_of_the_same_columns() {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut worst: f64 = 0.0;
         for (a, column) in columns.iter().enumerate() {
-            worst = larger(worst, (normal.gradient[a] - dot(column, &residual)).abs());
+            worst = larger_or_nan(worst, (normal.gradient[a] - dot(column, &residual)).abs());
             for (b, other) in columns.iter().enumerate().skip(a) {
-                worst = larger(worst, (normal.gram[a * problem.dim() + b] - dot(column, other)).abs());
+                worst = larger_or_nan(worst, (normal.gram[a * problem.dim() + b] - dot(column, other)).abs());
             }
         }
         println!("{name:6} {} unknowns: {worst:.1e}", problem.dim());
@@ -242,7 +242,7 @@ fn second_difference(problem: &Problem<'_>, estimate: &Estimate, (a, b): (usize,
 
 /// Largest difference of `JᵀJ + curvature` from second differences, over the largest element.
 fn hessian_error(make: Measure, turn: f64) -> f64 {
-    [0, 1].map(|station| hessian_error_from(make, station, turn)).into_iter().fold(0.0, larger)
+    [0, 1].map(|station| hessian_error_from(make, station, turn)).into_iter().fold(0.0, larger_or_nan)
 }
 
 fn hessian_error_from(make: Measure, station: usize, turn: f64) -> f64 {
@@ -260,8 +260,8 @@ fn hessian_error_from(make: Measure, station: usize, turn: f64) -> f64 {
         for b in a..problem.dim() {
             let at = a * problem.dim() + b;
             let numeric = second_difference(&problem, &estimate, (a, b), 0.01);
-            worst = larger(worst, (gram[at] + curvature[at] - numeric).abs());
-            largest = larger(largest, numeric.abs());
+            worst = larger_or_nan(worst, (gram[at] + curvature[at] - numeric).abs());
+            largest = larger_or_nan(largest, numeric.abs());
         }
     }
     worst / largest

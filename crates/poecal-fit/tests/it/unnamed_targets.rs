@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
 use poecal_fit::forensics::{DiagnosisOptions, diagnose};
 use poecal_model::measurement::{Dataset, Measurement};
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 
 /// Statements on rows of 30 configurations; the positions of each are those that `seen` computes from the tip.
 fn statements(seen: impl Fn(usize, Pose) -> Vec<Vector3<f64>>) -> Vec<String> {
-    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
         for position in seen(row, made.data.observations[row].measurement.pose()) {

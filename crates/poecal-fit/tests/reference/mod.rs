@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, TargetTwist};
 use poecal_fit::parameters::Parameter;
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Chain, Estimate, Linkage, Range};
+use poecal_fit::state::{Estimate, Linkage, RangeModel, RowChain};
 use poecal_model::measurement::NUMBERS;
-use poecal_numerics::solve::{LeastSquares as _, Normal};
+use poecal_numerics::solve::{LeastSquares as _, NormalEquations};
 
 /// Calls `each` with the whitened Jacobian of the prediction (row-major) and residual of each row in turn (theory.md §4 (17)).
 pub(crate) fn for_rows(
@@ -16,7 +16,7 @@ pub(crate) fn for_rows(
     mut each: impl FnMut(u32, &[f64], &[f64]),
 ) {
     let (n, session) = (problem.dim(), problem.session());
-    let (linkage, mut chain) = (Linkage::new(state), Chain::default());
+    let (linkage, mut chain) = (Linkage::new(state), RowChain::default());
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
     for &row in rows {
         let observation = &session.data.observations[row as usize];
@@ -52,9 +52,9 @@ pub(crate) fn for_rows(
 
 /// The target at the position that the zero and scale of its instrument yield, and the twists of all unknowns as motions of it (theory.md
 /// §4 (15d)).
-fn as_read(problem: &Problem<'_>, state: &Estimate, chain: &Chain, twists: &mut [TargetTwist]) -> Pose {
+fn as_read(problem: &Problem<'_>, state: &Estimate, chain: &RowChain, twists: &mut [TargetTwist]) -> Pose {
     let range = state.range(chain.station);
-    if range == Range::default() {
+    if range == RangeModel::default() {
         return chain.target;
     }
     let place = chain.target.translation;
@@ -67,12 +67,12 @@ fn as_read(problem: &Problem<'_>, state: &Estimate, chain: &Chain, twists: &mut 
             places.iter().for_each(|&(at, _)| twists[at].0 = moved * twists[at].0);
         }
     }
-    range.seen(&chain.target)
+    range.locate_target(&chain.target)
 }
 
 /// Normal information of a problem without a prior, theory.md §6 (28).
-pub(crate) fn normal(problem: &Problem<'_>, state: &Estimate) -> Normal {
-    let mut normal = Normal::new(problem.dim());
+pub(crate) fn normal(problem: &Problem<'_>, state: &Estimate) -> NormalEquations {
+    let mut normal = NormalEquations::new(problem.dim());
     for_rows(problem, state, problem.rows(), |_, jacobian, e| normal.add_rows(jacobian, e, 0));
     normal
 }

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::links::{LinkJoint, LinkJointKind, Links};
+use super::links::{LinkJoint, LinkJointKind, LinkTree};
 use poecal_arm::lie::Pose;
 use poecal_model::forms::AxisFrames;
 use poecal_numerics::error::{ErrorKind, Result, first_few};
-use poecal_storage::yaml::{Value, values};
+use poecal_storage::yaml::{YamlValue, values};
 
 const EXPECTED: &str = "the origins of an arm's joints in YAML: `kinematics` with `shoulder` … `wrist_3` (Universal Robots) or `joint1` … (uFactory), \
                         or `joint1` … `joint8` with `kinematic` (Franka)";
@@ -23,7 +23,7 @@ const UR: [(&str, &str); 6] = [
     ("wrist_3", "wrist_3_joint"),
 ];
 
-pub(crate) fn read(text: &str, path: &Path) -> Result<Links> {
+pub(crate) fn read(text: &str, path: &Path) -> Result<LinkTree> {
     let values = values(text, path, EXPECTED)?;
     let refuse = |found: String| {
         Err(ErrorKind::Model.error(format!("found {found}, expected {EXPECTED}")).in_file(path))
@@ -33,7 +33,7 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Links> {
     let is_franka = first.keys.get(1).is_some_and(|key| key == "kinematic");
     let own: &[&str] = if is_franka { &["kinematic"] } else { &[] };
     let above: &[&str] = if is_franka { &[] } else { &["kinematics"] };
-    let mut known: BTreeMap<&str, BTreeMap<&str, &Value>> = BTreeMap::new();
+    let mut known: BTreeMap<&str, BTreeMap<&str, &YamlValue>> = BTreeMap::new();
     for value in &values {
         if let Some((key, number)) = parts(value, above, own) {
             known.entry(key).or_default().insert(number, value);
@@ -76,11 +76,11 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Links> {
     let base = if is_franka { "link0" } else { "link_base" };
     let names: Vec<_> = (1..=joints.len()).map(|k| (format!("joint{k}"), format!("link{k}"))).collect();
     let tip = if is_franka { format!("link{}", joints.len() + 1) } else { "link_eef".to_owned() };
-    Ok(serial("arm", base, &names, &tip, &AxisFrames { joints, last_from_tip }))
+    Ok(serial_links("arm", base, &names, &tip, &AxisFrames { joints, last_from_tip }))
 }
 
 /// The key and the number's name of a value that is part of an origin.
-fn parts<'a>(value: &'a Value, above: &[&str], own: &[&str]) -> Option<(&'a str, &'a str)> {
+fn parts<'a>(value: &'a YamlValue, above: &[&str], own: &[&str]) -> Option<(&'a str, &'a str)> {
     let rest = strip(&value.keys, above)?;
     let (key, rest) = rest.split_first()?;
     let (number, none) = strip(rest, own)?.split_first()?;
@@ -96,7 +96,7 @@ fn is_number(word: &str) -> bool {
     !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-fn origin(of: Option<&BTreeMap<&str, &Value>>, path: &Path, key: &str) -> Result<Pose> {
+fn origin(of: Option<&BTreeMap<&str, &YamlValue>>, path: &Path, key: &str) -> Result<Pose> {
     let mut numbers = [0.0; 6];
     for (number, name) in numbers.iter_mut().zip(NUMBERS) {
         let Some(value) = of.and_then(|of| of.get(name)) else {
@@ -111,14 +111,20 @@ fn origin(of: Option<&BTreeMap<&str, &Value>>, path: &Path, key: &str) -> Result
 }
 
 /// An arm of Universal Robots, with the names of its description.
-pub(crate) fn ur_arm(frames: &AxisFrames) -> Links {
+pub(crate) fn ur_arm(frames: &AxisFrames) -> LinkTree {
     let names = UR.map(|(link, joint)| (joint.to_owned(), format!("{link}_link")));
-    serial("ur", "base_link_inertia", &names, "tool0", frames)
+    serial_links("ur", "base_link_inertia", &names, "tool0", frames)
 }
 
 /// A serial arm of joints that rotate about z.
-fn serial(name: &str, base: &str, names: &[(String, String)], tip: &str, frames: &AxisFrames) -> Links {
-    let mut links = Links::new(name);
+fn serial_links(
+    name: &str,
+    base: &str,
+    names: &[(String, String)],
+    tip: &str,
+    frames: &AxisFrames,
+) -> LinkTree {
+    let mut links = LinkTree::new(name);
     let mut parent = links.add(base, None);
     for ((joint, link), frame) in names.iter().zip(&frames.joints) {
         let child = links.add(link, None);

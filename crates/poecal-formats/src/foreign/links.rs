@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Unit, Vector3};
 
-use crate::urdf::{UrdfText, WIDE_LIMITS, escaped};
+use crate::urdf::{UrdfText, WIDE_LIMITS, escape_attribute};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_model::robot::Limits;
-use poecal_storage::numbers::shortest;
+use poecal_model::robot::JointLimits;
+use poecal_storage::numbers::format_shortest;
 
 /// A tree of links.
 #[derive(Default)]
-pub(crate) struct Links {
+pub(crate) struct LinkTree {
     name: String,
     links: Vec<(String, Option<Inertial>)>,
-    names: Names,
-    joint_names: Names,
+    names: LinkNames,
+    joint_names: LinkNames,
     pub(crate) joints: Vec<LinkJoint>,
     /// Contents of the file that are not read, a sentence.
     pub(crate) unread: Option<String>,
@@ -23,20 +23,20 @@ pub(crate) struct Links {
 
 /// Names in use: those of the file, from the beginning, and those that were added.
 #[derive(Default)]
-struct Names {
+struct LinkNames {
     of_file: BTreeSet<String>,
     used: BTreeSet<String>,
     made: BTreeMap<String, usize>,
 }
 
-impl Names {
+impl LinkNames {
     /// A name of the file, or another one if it was used.
-    fn stated(&mut self, name: &str) -> String {
-        if self.used.insert(name.to_owned()) { name.to_owned() } else { self.free(name) }
+    fn claim_name(&mut self, name: &str) -> String {
+        if self.used.insert(name.to_owned()) { name.to_owned() } else { self.free_name(name) }
     }
 
     /// A name that is not in use: the wanted one, or with a number at its end.
-    fn free(&mut self, wanted: &str) -> String {
+    fn free_name(&mut self, wanted: &str) -> String {
         let count = self.made.entry(wanted.to_owned()).or_default();
         let mut name = wanted.to_owned();
         while self.of_file.contains(&name) || self.used.contains(&name) {
@@ -65,7 +65,7 @@ pub(crate) struct LinkJoint {
     /// The child's frame in the parent's, at zero.
     pub(crate) parent_from_child: Pose,
     pub(crate) axis: Unit<Vector3<f64>>,
-    pub(crate) limits: Option<Limits>,
+    pub(crate) limits: Option<JointLimits>,
     pub(crate) mimic: Option<Mimic>,
 }
 
@@ -98,9 +98,9 @@ pub(crate) struct Mimic {
     pub(crate) offset: f64,
 }
 
-impl Links {
+impl LinkTree {
     pub(crate) fn new(name: &str) -> Self {
-        Links { name: name.to_owned(), ..Links::default() }
+        LinkTree { name: name.to_owned(), ..LinkTree::default() }
     }
 
     /// Reserves the names of the file's links and joints, so that added ones differ.
@@ -111,14 +111,14 @@ impl Links {
 
     /// Adds a link of the file; returns its name, which is another one if there is a link of that name already.
     pub(crate) fn add(&mut self, name: &str, inertial: Option<Inertial>) -> String {
-        let name = self.names.stated(name);
+        let name = self.names.claim_name(name);
         self.links.push((name.clone(), inertial));
         name
     }
 
     /// Adds a link that the file does not name.
     pub(crate) fn add_unnamed(&mut self, wanted: &str, inertial: Option<Inertial>) -> String {
-        let name = self.names.free(wanted);
+        let name = self.names.free_name(wanted);
         self.links.push((name.clone(), inertial));
         name
     }
@@ -131,14 +131,14 @@ impl Links {
     /// The name of a joint of the file, or one for a joint without.
     pub(crate) fn joint_name(&mut self, stated: Option<&str>, wanted: &str) -> String {
         match stated {
-            Some(name) => self.joint_names.stated(name),
-            None => self.joint_names.free(wanted),
+            Some(name) => self.joint_names.claim_name(name),
+            None => self.joint_names.free_name(wanted),
         }
     }
 
     /// Fixes a link to another one.
     pub(crate) fn fix(&mut self, parent: &str, child: &str, parent_from_child: Pose) {
-        let name = self.joint_names.free(&format!("{child}_mount"));
+        let name = self.joint_names.free_name(&format!("{child}_mount"));
         let ends = (parent.to_owned(), child.to_owned());
         self.joints.push(LinkJoint::new(name, LinkJointKind::Fixed, ends, parent_from_child));
     }
@@ -151,10 +151,10 @@ impl Links {
                 text.link(name);
                 continue;
             };
-            text.line(1, &format!("<link name=\"{}\">", escaped(name)));
+            text.line(1, &format!("<link name=\"{}\">", escape_attribute(name)));
             text.line(2, "<inertial>");
             text.origin(3, pose);
-            text.line(3, &format!("<mass value=\"{}\"/>", shortest(*kg)));
+            text.line(3, &format!("<mass value=\"{}\"/>", format_shortest(*kg)));
             text.line(2, "</inertial>");
             text.line(1, "</link>");
         }

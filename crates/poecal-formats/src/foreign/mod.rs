@@ -1,7 +1,7 @@
 //! Models in forms of simulators and makers. Each is read as links and joints, and the equivalent URDF is the robot's document. So chains are
 //! selected, and results written, as for any URDF.
 //!
-//! A new form is a module that makes links and joints, and a variant of [`Form`].
+//! A new form is a module that makes links and joints, and a variant of [`ForeignForm`].
 
 mod driver_yaml;
 mod links;
@@ -17,7 +17,7 @@ use poecal_storage::xml::root_name;
 
 /// A form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum ForeignForm {
     /// MuJoCo's model.
     Mjcf,
     /// Gazebo's model.
@@ -28,18 +28,18 @@ pub enum Form {
     UrConf,
 }
 
-impl Form {
+impl ForeignForm {
     /// The form of a text; `None` for others.
     pub fn from_text(text: &str, path: &Path) -> Option<Self> {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
         match extension.to_ascii_lowercase().as_str() {
-            "yaml" | "yml" => return Some(Form::DriverYaml),
-            "conf" => return Some(Form::UrConf),
+            "yaml" | "yml" => return Some(ForeignForm::DriverYaml),
+            "conf" => return Some(ForeignForm::UrConf),
             _ => {}
         }
         match root_name(text)? {
-            "mujoco" | "mujocoinclude" => Some(Form::Mjcf),
-            "sdf" | "gazebo" => Some(Form::Sdf),
+            "mujoco" | "mujocoinclude" => Some(ForeignForm::Mjcf),
+            "sdf" | "gazebo" => Some(ForeignForm::Sdf),
             _ => None,
         }
     }
@@ -47,16 +47,16 @@ impl Form {
     /// Its name.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Form::Mjcf => "MJCF",
-            Form::Sdf => "SDF",
-            Form::DriverYaml => "YAML",
-            Form::UrConf => "controller's DH table",
+            ForeignForm::Mjcf => "MJCF",
+            ForeignForm::Sdf => "SDF",
+            ForeignForm::DriverYaml => "YAML",
+            ForeignForm::UrConf => "controller's DH table",
         }
     }
 
     /// The file beside that an incomplete text needs.
     pub fn sibling(self, text: &str, path: &Path) -> Option<PathBuf> {
-        (self == Form::UrConf).then(|| ur_conf::sibling(text, path)).flatten()
+        (self == ForeignForm::UrConf).then(|| ur_conf::sibling(text, path)).flatten()
     }
 
     /// The URDF that is equivalent to a text and its sibling.
@@ -75,10 +75,10 @@ impl Form {
             .map(String::as_str)
             .collect();
         let links = match self {
-            Form::Mjcf => mjcf::read(text, path, &named),
-            Form::Sdf => sdf::read(text, path, &named),
-            Form::DriverYaml => driver_yaml::read(text, path),
-            Form::UrConf => ur_conf::read(text, path, beside),
+            ForeignForm::Mjcf => mjcf::read(text, path, &named),
+            ForeignForm::Sdf => sdf::read(text, path, &named),
+            ForeignForm::DriverYaml => driver_yaml::read(text, path),
+            ForeignForm::UrConf => ur_conf::read(text, path, beside),
         }?;
         // Its lines are in no file.
         UrdfDocument::parse(&links.urdf(), path, selection)

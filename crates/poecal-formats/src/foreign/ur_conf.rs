@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use super::driver_yaml::ur_arm;
-use super::links::Links;
+use super::links::LinkTree;
 use poecal_arm::lie::Pose;
 use poecal_model::forms::AxisFrames;
-use poecal_model::robot::{DhConvention, DhRow, JointKind, Robot};
+use poecal_model::robot::{DhRow, DhTableConvention, JointKind, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::numbers::LARGEST_NUMBER;
 
@@ -28,7 +28,7 @@ pub(crate) fn sibling(text: &str, path: &Path) -> Option<PathBuf> {
 }
 
 /// The arm of a text and of the one beside it.
-pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Result<Links> {
+pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Result<LinkTree> {
     let mut lines = lines(text, path);
     lines.extend(beside.into_iter().flat_map(|(text, path)| self::lines(text, path)));
     let list = |section: &str, key: &str| -> Result<Option<[f64; JOINTS]>> {
@@ -39,7 +39,7 @@ pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
                 .error(format!("found `{key}` a second time in [{section}], expected it once"))
                 .at_line(line.path, line.number));
         }
-        first.map(Line::numbers).transpose()
+        first.map(ConfLine::numbers).transpose()
     };
     let nominal = |key: &str| -> Result<[f64; JOINTS]> {
         list("DH", key)?.ok_or_else(|| {
@@ -82,14 +82,14 @@ pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
         })
         .collect();
     let place = |error: Error| error.in_file(path);
-    let robot = Robot::from_dh("ur", DhConvention::Standard, &rows, Pose::identity(), Pose::identity());
+    let robot = Robot::from_dh("ur", DhTableConvention::Standard, &rows, Pose::identity(), Pose::identity());
     let mut frames = AxisFrames::from_robot(&robot.map_err(place)?).map_err(place)?;
     frames.end_at_tip();
     Ok(ur_arm(&frames))
 }
 
 /// `key = value` of a section.
-struct Line<'a> {
+struct ConfLine<'a> {
     path: &'a Path,
     section: &'a str,
     key: &'a str,
@@ -97,7 +97,7 @@ struct Line<'a> {
     number: usize,
 }
 
-impl Line<'_> {
+impl ConfLine<'_> {
     fn numbers(&self) -> Result<[f64; JOINTS]> {
         let refuse = |found: String| {
             ErrorKind::Model
@@ -121,7 +121,7 @@ impl Line<'_> {
 }
 
 /// The lines with values.
-fn lines<'a>(text: &'a str, path: &'a Path) -> Vec<Line<'a>> {
+fn lines<'a>(text: &'a str, path: &'a Path) -> Vec<ConfLine<'a>> {
     let mut section = "";
     let mut found = Vec::new();
     for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
@@ -129,7 +129,7 @@ fn lines<'a>(text: &'a str, path: &'a Path) -> Vec<Line<'a>> {
         if let Some(name) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
             section = name.trim();
         } else if let Some((key, value)) = line.split_once('=') {
-            found.push(Line { path, section, key: key.trim(), value: value.trim(), number: index + 1 });
+            found.push(ConfLine { path, section, key: key.trim(), value: value.trim(), number: index + 1 });
         }
     }
     found

@@ -6,12 +6,12 @@ use nalgebra::Vector3;
 use toml::Spanned;
 
 use super::context::{Context, TABLE_ROUNDING, span};
-use super::file::{Convention, File, JointTable, PoseTable, ScrewTable};
+use super::file::{JointTable, PoseTable, RobotFileConvention, RobotTomlFile, ScrewTable};
 use super::mounts;
 use crate::mimic;
 use poecal_arm::lie::{Pose, Screw, Twist};
 use poecal_model::robot::{
-    DhConvention, DhRow, Joint, JointKind, JointTerm, Limits, Reading, Robot, Tolerance,
+    DhRow, DhTableConvention, Joint, JointKind, JointLimits, JointTerm, Reading, Robot, Tolerance,
 };
 use poecal_numerics::error::Result;
 use poecal_numerics::unit::Unit;
@@ -19,14 +19,14 @@ use poecal_numerics::unit::Unit;
 /// Largest `v·ω` that counts as rounding, as a share of the robot's size.
 const PITCH_ROUNDING: f64 = 1e-3;
 
-pub(crate) fn robot(context: &Context, file: &File) -> Result<Robot> {
+pub(crate) fn robot(context: &Context, file: &RobotTomlFile) -> Result<Robot> {
     check_version(context, file)?;
     let name = context.name(&file.name, "the robot")?;
     check_joint_names(context, file)?;
     let mut robot = match file.convention {
-        Convention::Screws => from_screws(context, file, &name)?,
-        Convention::StandardDh => from_dh(context, file, &name, DhConvention::Standard)?,
-        Convention::ModifiedDh => from_dh(context, file, &name, DhConvention::Modified)?,
+        RobotFileConvention::Screws => from_screws(context, file, &name)?,
+        RobotFileConvention::StandardDh => from_dh(context, file, &name, DhTableConvention::Standard)?,
+        RobotFileConvention::ModifiedDh => from_dh(context, file, &name, DhTableConvention::Modified)?,
     };
     let tables: BTreeMap<&str, &JointTable> = file.joint.iter().map(|table| (table.name(), table)).collect();
     for (joint, table) in robot.joints.iter_mut().zip(&file.joint) {
@@ -59,7 +59,7 @@ pub(crate) fn robot(context: &Context, file: &File) -> Result<Robot> {
                 );
                 return Err(context.error(value.span(), message));
             }
-            let [coefficient] = context.checked([found], value.span(), &of)?;
+            let [coefficient] = context.check_numbers([found], value.span(), &of)?;
             robot.terms.push(JointTerm { joint, term, coefficient });
         }
     }
@@ -84,7 +84,7 @@ fn tolerance(context: &Context, table: &JointTable) -> Result<Option<Tolerance>>
     Err(context.error(stated.span(), message))
 }
 
-fn check_version(context: &Context, file: &File) -> Result<()> {
+fn check_version(context: &Context, file: &RobotTomlFile) -> Result<()> {
     let version = *file.poecal_robot.get_ref();
     if version == 1 {
         return Ok(());
@@ -93,7 +93,7 @@ fn check_version(context: &Context, file: &File) -> Result<()> {
     Err(context.error(file.poecal_robot.span(), message))
 }
 
-fn check_joint_names(context: &Context, file: &File) -> Result<()> {
+fn check_joint_names(context: &Context, file: &RobotTomlFile) -> Result<()> {
     let mut names = BTreeSet::new();
     for joint in &file.joint {
         context.name(&joint.name, "the joint")?;
@@ -106,7 +106,7 @@ fn check_joint_names(context: &Context, file: &File) -> Result<()> {
     Ok(())
 }
 
-fn from_screws(context: &Context, file: &File, name: &str) -> Result<Robot> {
+fn from_screws(context: &Context, file: &RobotTomlFile, name: &str) -> Result<Robot> {
     context.refuse([("base", span(&file.base)), ("tool", span(&file.tool))], |key| {
         format!("found [{key}] in a model of screws, expected [home] only: it holds the tip's pose")
     })?;
@@ -122,7 +122,7 @@ fn from_screws(context: &Context, file: &File, name: &str) -> Result<Robot> {
 }
 
 /// A length that characterises the size of the robot, metres.
-fn size_m(context: &Context, file: &File, home: &Pose) -> f64 {
+fn size_m(context: &Context, file: &RobotTomlFile, home: &Pose) -> f64 {
     let metres = |numbers: [f64; 3]| context.length.to_metres(Vector3::from(numbers).norm());
     file.joint
         .iter()
@@ -179,7 +179,7 @@ fn joint_of_line(
     direction: &Spanned<[f64; 3]>,
 ) -> Result<Joint> {
     let of = format!("joint `{name}`");
-    let axis = Vector3::from(context.checked(*direction.get_ref(), direction.span(), &of)?);
+    let axis = Vector3::from(context.check_numbers(*direction.get_ref(), direction.span(), &of)?);
     if axis == Vector3::zeros() {
         let message = format!("the direction of {of} is zero, expected a direction, such as [0, 0, 1]");
         return Err(context.error(direction.span(), message));
@@ -203,10 +203,10 @@ fn screw_of_table(
 ) -> Result<Screw> {
     let of = format!("the screw of joint `{name}`");
     let error = |message: String| Err(context.error(table.span(), message));
-    let w = Vector3::from(context.checked(table.get_ref().w, table.span(), &of)?);
+    let w = Vector3::from(context.check_numbers(table.get_ref().w, table.span(), &of)?);
     let v = match kind {
         JointKind::Revolute => context.metres(table.get_ref().v, table.span(), &of)?,
-        JointKind::Prismatic => context.checked(table.get_ref().v, table.span(), &of)?,
+        JointKind::Prismatic => context.check_numbers(table.get_ref().v, table.span(), &of)?,
     };
     let v = Vector3::from(v);
     if kind == JointKind::Prismatic && w != Vector3::zeros() {
@@ -235,7 +235,12 @@ fn screw_of_table(
     Screw::project(&Twist::new(v, w)).map_or_else(|| error(format!("{of} is zero, expected an axis")), Ok)
 }
 
-fn from_dh(context: &Context, file: &File, name: &str, convention: DhConvention) -> Result<Robot> {
+fn from_dh(
+    context: &Context,
+    file: &RobotTomlFile,
+    name: &str,
+    convention: DhTableConvention,
+) -> Result<Robot> {
     context.refuse([("home", span(&file.home))], |key| {
         format!(
             "found [{key}] in a DH model, expected [base] and [tool]: the home pose follows from the table"
@@ -279,18 +284,18 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
     })
 }
 
-fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
+fn limits(context: &Context, table: &JointTable) -> Result<Option<JointLimits>> {
     let Some(limits) = &table.limits else { return Ok(None) };
     let of = format!("limits of joint `{}`", table.name());
     let values = limits.get_ref().map(|value| context.joint_value(table.kind, value));
-    let [lower, upper] = context.checked(values, limits.span(), &of)?;
+    let [lower, upper] = context.check_numbers(values, limits.span(), &of)?;
     if lower >= upper {
         let [lower, upper] = limits.get_ref();
         let message =
             format!("found {of} from {lower} to {upper}, expected [lower, upper] with lower < upper");
         return Err(context.error(limits.span(), message));
     }
-    Ok(Some(Limits { lower, upper }))
+    Ok(Some(JointLimits { lower, upper }))
 }
 
 /// Reading of a joint, through mimic relations. A leader outside the chain is read too, in the follower's unit.
@@ -311,7 +316,7 @@ fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &Join
             table.multiplier * unit(follower.kind) / unit(leader)
         };
         let offset = context.joint_value(follower.kind, table.offset);
-        let [multiplier, offset] = context.checked([multiplier, offset], mimic.span(), &of)?;
+        let [multiplier, offset] = context.check_numbers([multiplier, offset], mimic.span(), &of)?;
         if table.joint.trim().is_empty() {
             return Err(context.error(mimic.span(), format!("{of} names no joint, expected its leader")));
         }

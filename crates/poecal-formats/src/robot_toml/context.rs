@@ -46,7 +46,7 @@ impl Context<'_> {
     }
 
     /// The numbers, if all are finite and of plausible size.
-    pub(crate) fn checked<const N: usize>(
+    pub(crate) fn check_numbers<const N: usize>(
         &self,
         numbers: [f64; N],
         span: Range<usize>,
@@ -71,7 +71,7 @@ impl Context<'_> {
         span: Range<usize>,
         of: &str,
     ) -> Result<[f64; N]> {
-        self.checked(lengths.map(|length| self.length.to_metres(length)), span, of)
+        self.check_numbers(lengths.map(|length| self.length.to_metres(length)), span, of)
     }
 
     pub(crate) fn radians<const N: usize>(
@@ -80,7 +80,7 @@ impl Context<'_> {
         span: Range<usize>,
         of: &str,
     ) -> Result<[f64; N]> {
-        self.checked(angles.map(|angle| self.angle.to_radians(angle)), span, of)
+        self.check_numbers(angles.map(|angle| self.angle.to_radians(angle)), span, of)
     }
 
     /// A joint's value in radians or metres.
@@ -128,7 +128,7 @@ impl Context<'_> {
     }
 
     fn quaternion(&self, quaternion: &Spanned<[f64; 4]>, of: &str) -> Result<Matrix3<f64>> {
-        let q = Vector4::from(self.checked(*quaternion.get_ref(), quaternion.span(), of)?);
+        let q = Vector4::from(self.check_numbers(*quaternion.get_ref(), quaternion.span(), of)?);
         if (q.norm() - 1.0).abs() > TABLE_ROUNDING {
             let message = format!(
                 "the quaternion of {of} has length {:.4}, expected a unit quaternion (x, y, z, w)",
@@ -142,7 +142,7 @@ impl Context<'_> {
     fn rotation(&self, rows: &Spanned<[[f64; 3]; 3]>, of: &str) -> Result<Matrix3<f64>> {
         let mut matrix = Matrix3::zeros();
         for (row, numbers) in rows.get_ref().iter().enumerate() {
-            let numbers = self.checked(*numbers, rows.span(), of)?;
+            let numbers = self.check_numbers(*numbers, rows.span(), of)?;
             matrix.set_row(row, &Vector3::from(numbers).transpose());
         }
         let skew = (matrix.transpose() * matrix - Matrix3::identity()).amax();

@@ -9,13 +9,13 @@ use poecal_model::robot::{JointKind, Term};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct File {
+pub(crate) struct RobotTomlFile {
     pub(crate) poecal_robot: Spanned<i64>,
     pub(crate) name: Spanned<String>,
     pub(crate) length_unit: LengthUnit,
     pub(crate) angle_unit: AngleUnit,
     #[serde(default)]
-    pub(crate) convention: Convention,
+    pub(crate) convention: RobotFileConvention,
     pub(crate) base_link: Option<Spanned<String>>,
     pub(crate) tip_link: Option<Spanned<String>>,
     pub(crate) tip_on: Option<Spanned<String>>,
@@ -70,7 +70,7 @@ impl AngleUnit {
 
 #[derive(Clone, Copy, Default, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Convention {
+pub(crate) enum RobotFileConvention {
     #[default]
     Screws,
     StandardDh,
@@ -117,7 +117,7 @@ pub(crate) struct ScrewTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct MimicTable {
     pub(crate) joint: String,
-    #[serde(default = "one")]
+    #[serde(default = "default_factor")]
     pub(crate) multiplier: f64,
     #[serde(default)]
     pub(crate) offset: f64,
@@ -134,7 +134,7 @@ fn revolute() -> JointKind {
     JointKind::Revolute
 }
 
-fn one() -> f64 {
+fn default_factor() -> f64 {
     1.0
 }
 

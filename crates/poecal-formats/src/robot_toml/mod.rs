@@ -29,7 +29,7 @@ pub use write::write;
 use context::Context;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text;
 
 /// Reads a robot from a TOML file.
@@ -51,10 +51,12 @@ pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {
 
 /// Compiled once, and not for each kind of path.
 fn parse_at(text: &str, path: &Path) -> Result<Robot> {
-    if text.len() as u64 > Limit::Settings.most() {
-        return Err(ErrorKind::File.error(Limit::Settings.exceeded("a model in TOML")).in_file(path));
+    if text.len() as u64 > ResourceLimit::Settings.value() {
+        return Err(ErrorKind::File
+            .error(ResourceLimit::Settings.exceeded_error("a model in TOML"))
+            .in_file(path));
     }
-    let file: file::File = toml::from_str(text).map_err(|error| syntax_error(&error, text, path))?;
+    let file: file::RobotTomlFile = toml::from_str(text).map_err(|error| syntax_error(&error, text, path))?;
     let context = Context { text, path, length: file.length_unit, angle: file.angle_unit };
     build::robot(&context, &file)
 }

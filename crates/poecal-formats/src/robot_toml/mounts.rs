@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use toml::Spanned;
 
 use super::context::Context;
-use super::file::{Convention, File, TargetTable};
+use super::file::{RobotFileConvention, RobotTomlFile, TargetTable};
 use poecal_model::robot::{Body, Mass, Robot};
 use poecal_numerics::error::{Result, nearest_or_all};
 
@@ -13,7 +13,7 @@ use poecal_numerics::error::{Result, nearest_or_all};
 pub(crate) const BASE: &str = "base";
 
 /// Completes a robot with its branches, targets and instruments.
-pub(crate) fn place(context: &Context, file: &File, robot: &mut Robot) -> Result<()> {
+pub(crate) fn place(context: &Context, file: &RobotTomlFile, robot: &mut Robot) -> Result<()> {
     refuse_in_dh(context, file)?;
     for (index, table) in file.joint.iter().enumerate() {
         let Some(parent) = &table.parent else { continue };
@@ -65,7 +65,7 @@ pub(crate) fn place(context: &Context, file: &File, robot: &mut Robot) -> Result
 }
 
 /// Masses of the links.
-fn masses(context: &Context, file: &File, robot: &mut Robot) -> Result<()> {
+fn masses(context: &Context, file: &RobotTomlFile, robot: &mut Robot) -> Result<()> {
     for mass in &file.mass {
         let body = body(context, robot, &mass.on, "`on` of the mass")?;
         let place =
@@ -117,8 +117,8 @@ fn body(context: &Context, robot: &Robot, name: &Spanned<String>, of: &str) -> R
 }
 
 /// A DH table is a chain: each row begins at the end of the row before.
-fn refuse_in_dh(context: &Context, file: &File) -> Result<()> {
-    if file.convention == Convention::Screws {
+fn refuse_in_dh(context: &Context, file: &RobotTomlFile) -> Result<()> {
+    if file.convention == RobotFileConvention::Screws {
         return Ok(());
     }
     let parents = file.joint.iter().filter_map(|table| Some((table.parent.as_ref()?.span(), "parent")));

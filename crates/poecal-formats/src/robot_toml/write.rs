@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::mounts::BASE;
 use poecal_arm::lie::Pose;
 use poecal_model::robot::{Body, Joint, JointKind, Robot};
-use poecal_storage::numbers::{shortest, tidy};
+use poecal_storage::numbers::{format_shortest, tidy_numbers};
 
 /// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same, freed of rounding below 1e-15.
 ///
@@ -14,9 +14,9 @@ use poecal_storage::numbers::{shortest, tidy};
 pub fn write(robot: &Robot) -> String {
     let mut text = format!(
         "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n",
-        quoted(&robot.name),
-        quoted(&robot.base_name),
-        quoted(&robot.tip_name)
+        quote_toml(&robot.name),
+        quote_toml(&robot.base_name),
+        quote_toml(&robot.tip_name)
     );
     // Writing to a String cannot fail.
     if let Some(tip) = robot.tip {
@@ -31,18 +31,19 @@ pub fn write(robot: &Robot) -> String {
     }
     let _ = write!(text, "]\n\n[home]\n{}", pose_keys(&robot.home));
     for (name, pose) in &robot.targets {
-        let _ = write!(text, "\n[[target]]\nname = {}\n{}", quoted(name), pose_keys(pose));
+        let _ = write!(text, "\n[[target]]\nname = {}\n{}", quote_toml(name), pose_keys(pose));
     }
     for (key, mounts) in [("target", &robot.mounted), ("instrument", &robot.instruments)] {
         for mount in mounts {
-            let (name, on) = (quoted(&mount.name), body_name(robot, mount.body));
+            let (name, on) = (quote_toml(&mount.name), body_name(robot, mount.body));
             let pose = pose_keys(&robot.base_from(mount));
             let _ = write!(text, "\n[[{key}]]\nname = {name}\non = {on}\n{pose}");
         }
     }
     for mass in &robot.masses {
         let (on, position) = (body_name(robot, mass.body), array(mass.place.into()));
-        let _ = write!(text, "\n[[mass]]\non = {on}\nposition = {position}\nkg = {}\n", shortest(mass.kg));
+        let _ =
+            write!(text, "\n[[mass]]\non = {on}\nposition = {position}\nkg = {}\n", format_shortest(mass.kg));
     }
     text
 }
@@ -51,9 +52,9 @@ pub fn write(robot: &Robot) -> String {
 fn body_name(robot: &Robot, body: Body) -> String {
     let is_joint = |name: &str| robot.joints.iter().any(|joint| joint.name == name);
     match body.joint().and_then(|joint| robot.joints.get(joint)) {
-        Some(joint) => quoted(&joint.name),
-        None if is_joint(BASE) => quoted(""),
-        None => quoted(BASE),
+        Some(joint) => quote_toml(&joint.name),
+        None if is_joint(BASE) => quote_toml(""),
+        None => quote_toml(BASE),
     }
 }
 
@@ -63,12 +64,13 @@ fn joint_keys(joint: &Joint) -> String {
         JointKind::Revolute => format!("screw = {{ v = {v}, w = {w} }}"),
         JointKind::Prismatic => format!("screw = {{ v = {v} }}"),
     };
-    let mut keys = format!("name = {}, type = \"{}\", {screw}", quoted(&joint.name), joint.kind.word());
+    let mut keys = format!("name = {}, type = \"{}\", {screw}", quote_toml(&joint.name), joint.kind.word());
     if let Some(limits) = joint.limits {
-        let _ = write!(keys, ", limits = [{}, {}]", shortest(limits.lower), shortest(limits.upper));
+        let _ =
+            write!(keys, ", limits = [{}, {}]", format_shortest(limits.lower), format_shortest(limits.upper));
     }
     if let Some(tolerance) = joint.tolerance {
-        let (angle, length) = (shortest(tolerance.angle_rad), shortest(tolerance.length_m));
+        let (angle, length) = (format_shortest(tolerance.angle_rad), format_shortest(tolerance.length_m));
         let _ = write!(keys, ", tolerance = {{ angle = {angle}, length = {length} }}");
     }
     let reading = &joint.reading;
@@ -76,9 +78,9 @@ fn joint_keys(joint: &Joint) -> String {
         let _ = write!(
             keys,
             ", mimic = {{ joint = {}, multiplier = {}, offset = {} }}",
-            quoted(&reading.name),
-            shortest(reading.multiplier),
-            shortest(reading.offset)
+            quote_toml(&reading.name),
+            format_shortest(reading.multiplier),
+            format_shortest(reading.offset)
         );
     }
     keys
@@ -87,7 +89,8 @@ fn joint_keys(joint: &Joint) -> String {
 /// The terms of a joint's value.
 fn term_keys(robot: &Robot, joint: usize) -> String {
     let own = robot.terms.iter().filter(|it| it.joint == joint);
-    let keys: Vec<String> = own.map(|it| format!("{} = {}", it.term, shortest(it.coefficient))).collect();
+    let keys: Vec<String> =
+        own.map(|it| format!("{} = {}", it.term, format_shortest(it.coefficient))).collect();
     if keys.is_empty() { String::new() } else { format!(", terms = {{ {} }}", keys.join(", ")) }
 }
 
@@ -100,9 +103,9 @@ fn pose_keys(pose: &Pose) -> String {
 }
 
 fn array<const N: usize>(numbers: [f64; N]) -> String {
-    format!("[{}]", tidy(numbers).map(shortest).join(", "))
+    format!("[{}]", tidy_numbers(numbers).map(format_shortest).join(", "))
 }
 
-fn quoted(name: &str) -> String {
+fn quote_toml(name: &str) -> String {
     toml::Value::String(name.to_owned()).to_string()
 }

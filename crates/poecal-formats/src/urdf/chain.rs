@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::tree::Tree;
+use super::tree::UrdfTree;
 use super::{ChainSelection, ends};
 use poecal_numerics::error::{Error, ErrorKind, Result, nearest_or_all};
 use poecal_storage::xml::XmlSource;
@@ -19,7 +19,7 @@ pub(crate) struct UrdfChain {
     pub(crate) targets: Vec<(String, usize)>,
 }
 
-pub(crate) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChain> {
+pub(crate) fn select(tree: &UrdfTree, selection: &ChainSelection) -> Result<UrdfChain> {
     let find =
         |name: &Option<String>, option| name.as_deref().map(|name| find_link(tree, name, option)).transpose();
     let named = |mounts: &[(String, String)], what: &str| -> Result<Vec<(String, usize)>> {
@@ -32,7 +32,7 @@ pub(crate) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChai
     let tip = find(&selection.tip_link, "--tip-link")?;
     let (mut base, up) = match stated {
         Some(base) => {
-            let (top, up) = beside(tree, base, tip);
+            let (top, up) = find_branch_link(tree, base, tip);
             (Some(top), up)
         }
         None => (None, Vec::new()),
@@ -61,14 +61,14 @@ pub(crate) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChai
 
 /// The link from which the chain leads down, and the fixed joints from the base up to it. It is the base itself if the tip, or a moving link, is
 /// below it. Otherwise it is the nearest link above with this property, over fixed joints only.
-fn beside(tree: &Tree, base: usize, tip: Option<usize>) -> (usize, Vec<usize>) {
+fn find_branch_link(tree: &UrdfTree, base: usize, tip: Option<usize>) -> (usize, Vec<usize>) {
     let leads = |link: usize| match tip {
         Some(tip) => tip == link || tree.ancestors(tip).any(|(_, joint)| joint.parent == link),
         None => !ends::ends(tree, Some(link)).is_empty(),
     };
     let (mut at, mut up) = (base, Vec::new());
     while !leads(at) {
-        match tree.above(at) {
+        match tree.parent_joint(at) {
             Some((index, joint)) if joint.kind == super::tree::JointType::Fixed => {
                 up.push(index);
                 at = joint.parent;
@@ -82,7 +82,7 @@ fn beside(tree: &Tree, base: usize, tip: Option<usize>) -> (usize, Vec<usize>) {
 
 /// The first of some links that a joint moves, else the first of all.
 fn first_moved<'a>(
-    tree: &Tree,
+    tree: &UrdfTree,
     base: Option<usize>,
     mut links: impl Iterator<Item = &'a (String, usize)> + Clone,
 ) -> usize {
@@ -101,7 +101,7 @@ fn error(source: &XmlSource, message: String) -> Error {
     ErrorKind::Model.error(message).in_file(source.path)
 }
 
-fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
+fn find_link(tree: &UrdfTree, name: &str, option: &str) -> Result<usize> {
     tree.link(name).ok_or_else(|| {
         let known = nearest_or_all(name, &tree.links);
         error(&tree.source, format!("{option} names link `{name}`, expected a link of this file, {known}"))
@@ -109,7 +109,7 @@ fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
 }
 
 /// The only end link below a moving joint (below `base`, if stated).
-fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
+fn only_tip(tree: &UrdfTree, base: Option<usize>) -> Result<usize> {
     let error = |message: String| Err(error(&tree.source, message));
     let mut tips = ends::ends(tree, base);
     if tips.len() > 1 {
@@ -146,7 +146,7 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
 const FORKS: usize = 3;
 
 /// Path from `tip` up to `base`, or to the root. `what` is the link at its end, for messages.
-fn way_up(tree: &Tree, base: Option<usize>, tip: usize, what: &str) -> Result<UrdfChain> {
+fn way_up(tree: &UrdfTree, base: Option<usize>, tip: usize, what: &str) -> Result<UrdfChain> {
     let mut at = tip;
     let mut joints = Vec::new();
     for (index, joint) in tree.ancestors(tip) {
@@ -183,7 +183,7 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize, what: &str) -> Result<Ur
     }
 }
 
-fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
+fn check_joints(tree: &UrdfTree, chain: &UrdfChain) -> Result<()> {
     let (base, tip) = (tree.link_name(chain.base), tree.link_name(chain.tip));
     let named = !chain.instruments.is_empty() || !chain.targets.is_empty();
     let joints = || chain.joints.iter().filter_map(|&joint| tree.joints.get(joint));

@@ -31,7 +31,7 @@ pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
         }
     }
     found.extend_from_slice(document.remarks());
-    found.extend(turned(document.text()));
+    found.extend(find_degree_turns(document.text()));
     let origins = robot.joints.iter().map(|it| it.frame.translation);
     let before = std::iter::once(Vector3::zeros()).chain(origins.clone());
     for ((from, to), joint) in before.zip(origins).zip(&robot.joints) {
@@ -48,7 +48,7 @@ pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
 }
 
 /// The first rotations that look like degrees.
-fn turned(text: &str) -> Option<String> {
+fn find_degree_turns(text: &str) -> Option<String> {
     let mut lines = text.lines().zip(1..).filter_map(|(line, number)| {
         let (_, rest) = line.split_once("rpy=")?;
         let quote = rest.chars().next().filter(|it| ['"', '\''].contains(it))?;

@@ -2,46 +2,46 @@
 
 use std::collections::BTreeSet;
 
-use super::tree::Tree;
+use super::tree::UrdfTree;
 
 /// An end link below a moving joint.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct End {
+pub(crate) struct EndLink {
     pub(crate) link: usize,
     /// True if all moving joints above it lead mimic joints elsewhere, like the motor beside a telescopic column.
     pub(crate) only_leads: bool,
 }
 
 /// All end links below a base, or below every root, in the order of the file.
-pub(crate) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
+pub(crate) fn ends(tree: &UrdfTree, base: Option<usize>) -> Vec<EndLink> {
     let below = joints_below(tree);
     let leaders: Vec<BTreeSet<usize>> = tree.joints.iter().map(|joint| leaders_of(tree, joint)).collect();
-    let mut way = Way::new(tree, &leaders);
+    let mut way = JointPath::new(tree, &leaders);
     let mut ends = Vec::new();
     let starts = match base {
         Some(base) => vec![base],
-        None => (0..tree.links.len()).filter(|&link| tree.above(link).is_none()).collect(),
+        None => (0..tree.links.len()).filter(|&link| tree.parent_joint(link).is_none()).collect(),
     };
     for start in starts {
         // Links to visit, and joints to return by. Not recursive: a chain may be longer than the stack.
-        let mut steps = vec![Step::To(start, None)];
+        let mut steps = vec![WalkStep::To(start, None)];
         while let Some(step) = steps.pop() {
             let (link, joint) = match step {
-                Step::Back(joint) => {
+                WalkStep::Back(joint) => {
                     way.leave(joint);
                     continue;
                 }
-                Step::To(link, joint) => (link, joint),
+                WalkStep::To(link, joint) => (link, joint),
             };
             if let Some(joint) = joint {
                 way.enter(joint);
-                steps.push(Step::Back(joint));
+                steps.push(WalkStep::Back(joint));
             }
             let children = below.get(link).map_or(&[][..], Vec::as_slice);
             if children.is_empty() && way.moving > 0 {
-                ends.push(End { link, only_leads: way.alone == 0 });
+                ends.push(EndLink { link, only_leads: way.alone == 0 });
             }
-            steps.extend(children.iter().map(|&joint| Step::To(tree.joints[joint].child, Some(joint))));
+            steps.extend(children.iter().map(|&joint| WalkStep::To(tree.joints[joint].child, Some(joint))));
         }
     }
     ends.sort_unstable_by_key(|end| end.link);
@@ -49,7 +49,7 @@ pub(crate) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
 }
 
 /// Joints that move below a link, each with the first end link that it moves, in the order of the file.
-pub(crate) fn beyond(tree: &Tree, link: usize) -> Vec<(String, String)> {
+pub(crate) fn joints_beyond(tree: &UrdfTree, link: usize) -> Vec<(String, String)> {
     let below = joints_below(tree);
     let children = |link: usize| below.get(link).map_or(&[][..], Vec::as_slice);
     // Parents precede their children.
@@ -72,12 +72,12 @@ pub(crate) fn beyond(tree: &Tree, link: usize) -> Vec<(String, String)> {
 
 /// The links below a moving joint at which paths to several ends part, such as a flange with two tools, the nearest to the ends first. Each has the
 /// number of moving joints above it.
-pub(crate) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usize, usize)> {
+pub(crate) fn forks(tree: &UrdfTree, base: Option<usize>, ends: &[EndLink]) -> Vec<(usize, usize)> {
     let mut ways = vec![0_usize; tree.links.len()];
     for end in ends {
         let mut at = end.link;
         while base != Some(at)
-            && let Some((_, joint)) = tree.above(at)
+            && let Some((_, joint)) = tree.parent_joint(at)
         {
             at = joint.parent;
             ways[at] += 1;
@@ -93,7 +93,7 @@ pub(crate) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usiz
     for fork in (0..ways.len()).filter(|link| ways[*link] > 1) {
         let (mut way, mut at) = (Vec::new(), fork);
         let mut count = loop {
-            match (above[at], tree.above(at).filter(|_| base != Some(at))) {
+            match (above[at], tree.parent_joint(at).filter(|_| base != Some(at))) {
                 (Some(known), _) => break known,
                 (None, Some((_, joint))) => {
                     way.push((at, joint.kind.moves()));
@@ -114,13 +114,13 @@ pub(crate) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usiz
     forks
 }
 
-enum Step {
+enum WalkStep {
     To(usize, Option<usize>),
     Back(usize),
 }
 
 /// Joints below each link.
-fn joints_below(tree: &Tree) -> Vec<Vec<usize>> {
+fn joints_below(tree: &UrdfTree) -> Vec<Vec<usize>> {
     let mut below = vec![Vec::new(); tree.links.len()];
     for (index, joint) in tree.joints.iter().enumerate() {
         if let Some(joints) = below.get_mut(joint.parent) {
@@ -131,14 +131,14 @@ fn joints_below(tree: &Tree) -> Vec<Vec<usize>> {
 }
 
 /// The joints that a joint mimics.
-fn leaders_of(tree: &Tree, joint: &super::tree::TreeJoint<'_>) -> BTreeSet<usize> {
+fn leaders_of(tree: &UrdfTree, joint: &super::tree::TreeJoint<'_>) -> BTreeSet<usize> {
     let mimics = tree.source.children(joint.node, "mimic");
     mimics.filter_map(|mimic| tree.joint_index(mimic.attribute("joint")?)).collect()
 }
 
 /// Joints from the start of a walk to its current link.
-struct Way<'a> {
-    tree: &'a Tree<'a>,
+struct JointPath<'a> {
+    tree: &'a UrdfTree<'a>,
     leaders: &'a [BTreeSet<usize>],
     /// True for each joint on the path; then, for each joint, the number of its followers elsewhere.
     is_on: Vec<bool>,
@@ -148,12 +148,12 @@ struct Way<'a> {
     alone: usize,
 }
 
-impl<'a> Way<'a> {
-    fn new(tree: &'a Tree<'a>, leaders: &'a [BTreeSet<usize>]) -> Self {
+impl<'a> JointPath<'a> {
+    fn new(tree: &'a UrdfTree<'a>, leaders: &'a [BTreeSet<usize>]) -> Self {
         let count = tree.joints.len();
         let mut elsewhere = vec![0; count];
         leaders.iter().flatten().for_each(|&leader| elsewhere[leader] += 1);
-        Way { tree, leaders, is_on: vec![false; count], elsewhere, moving: 0, alone: 0 }
+        JointPath { tree, leaders, is_on: vec![false; count], elsewhere, moving: 0, alone: 0 }
     }
 
     fn counts(&self, joint: usize) -> bool {

@@ -7,35 +7,35 @@ mod chain;
 mod doubts;
 mod ends;
 mod origins;
-mod parts;
 mod patch;
 mod selection;
 mod splice;
 mod terms;
 mod tree;
+mod urdf_joints;
 mod visuals;
 mod write;
 
 use std::path::{Path, PathBuf};
 
 pub use doubts::doubts;
-pub use origins::Origin;
+pub use origins::UrdfOrigin;
 pub use patch::{PatchedUrdf, origin_values};
 pub use selection::{ChainSelection, named_link};
-pub use splice::escaped;
+pub use splice::escape_attribute;
 pub use terms::holdable;
 pub use visuals::{Geometry, Visual};
-pub use write::{Converted, write_new, written_new};
+pub use write::{ConvertedModel, write_new, written_new};
 pub(crate) use write::{UrdfText, WIDE_LIMITS};
 
-use crate::unread;
-use parts::{End, Part};
+use crate::unread_elements;
 use poecal_arm::lie::Pose;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 use poecal_storage::source_text;
-use poecal_storage::xml::{XmlSource, parsed, readable};
-use tree::Tree;
+use poecal_storage::xml::{XmlSource, declare_prefixes, parsed};
+use tree::UrdfTree;
+use urdf_joints::{NamedLink, UrdfJoint};
 
 /// A URDF text with its serial chain, or its tree of the joints that move named links.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,9 +43,9 @@ pub struct UrdfDocument {
     text: String,
     path: PathBuf,
     robot: Robot,
-    parts: Vec<Part>,
+    parts: Vec<UrdfJoint>,
     /// The tip's link, then those of instruments and targets, in the robot's order.
-    ends: Vec<End>,
+    ends: Vec<NamedLink>,
     /// Pose in the base of the link from which the chain leads down: the base itself, or a link connected to it by fixed joints.
     base_from_top: Pose,
     beyond: Vec<(String, String)>,
@@ -74,7 +74,7 @@ impl UrdfDocument {
 
     /// Compiled once, and not for each kind of path.
     fn parse_at(text: &str, path: &Path, selection: &ChainSelection) -> Result<Self> {
-        let readable = readable(text);
+        let readable = declare_prefixes(text);
         let document = parsed(&readable, path, EXPECTED)?;
         let source = XmlSource { document: &document, path };
         let robot_element = document.root_element();
@@ -91,12 +91,12 @@ impl UrdfDocument {
             return Err(source.syntax_error(robot_element, message));
         }
         refuse_xacro(&source)?;
-        let unread = unread::sentence(&source, robot_element, unread::URDF)?;
-        let tree = Tree::read(source)?;
+        let unread = unread_elements::sentence(&source, robot_element, unread_elements::URDF)?;
+        let tree = UrdfTree::read(source)?;
         let chain = chain::select(&tree, selection)?;
         let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
-        let (parts, ends, robot, base_from_top) = parts::read(&tree, &chain, name)?;
-        let remarks = unread.into_iter().chain(parts::remarks(&parts)).collect();
+        let (parts, ends, robot, base_from_top) = urdf_joints::read(&tree, &chain, name)?;
+        let remarks = unread.into_iter().chain(urdf_joints::remarks(&parts)).collect();
         Ok(UrdfDocument {
             text: text.to_owned(),
             path: path.to_path_buf(),
@@ -104,7 +104,7 @@ impl UrdfDocument {
             parts,
             ends,
             base_from_top,
-            beyond: ends::beyond(&tree, chain.tip),
+            beyond: ends::joints_beyond(&tree, chain.tip),
             made_from: None,
             remarks,
         })
@@ -125,7 +125,7 @@ impl UrdfDocument {
 
     /// Joints beyond the tip link, which the robot does not have, each with an end link that it moves.
     #[must_use]
-    pub fn beyond(&self) -> &[(String, String)] {
+    pub fn joints_beyond_tip(&self) -> &[(String, String)] {
         &self.beyond
     }
 

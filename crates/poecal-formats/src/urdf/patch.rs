@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use super::parts::Part;
-use super::splice::{Splice, escaped, triple};
+use super::splice::{Splice, escape_attribute, format_triple};
+use super::urdf_joints::UrdfJoint;
 use super::{ChainSelection, UrdfDocument};
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_model::robot::{Joint, JointKind, Mount, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::numbers::{shortest, tidy};
+use poecal_storage::numbers::{format_shortest, tidy_numbers};
 
 /// Smaller differences (metres, or of rotation matrices) are rounding: the text stays.
 const UNCHANGED: f64 = 1e-15;
@@ -39,16 +39,16 @@ impl UrdfDocument {
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if `calibrated` has other joints, instruments or targets, or a number of it is not finite.
-    pub fn patched(&self, calibrated: &Robot) -> Result<PatchedUrdf> {
+    pub fn patch(&self, calibrated: &Robot) -> Result<PatchedUrdf> {
         self.check_same_joints(calibrated)?;
-        let wanted = self.wanted(calibrated)?;
+        let wanted = self.end_poses(calibrated)?;
         let mut splice = Splice::new(&self.text);
         let mut joints = calibrated.joints.iter();
-        let carried = self.carried(&wanted);
+        let carried = self.carried_poses(&wanted);
         // Poses by the values of the new text, so that rounding does not accumulate along the chain.
         let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.parts.len());
         for (part, carried) in self.parts.iter().zip(carried) {
-            let base_from_parent = self.below(&base_from_links, part.parent);
+            let base_from_parent = self.link_pose(&base_from_links, part.parent);
             let moving = part.axis.and_then(|axis| Some((axis, joints.next()?)));
             base_from_links.push(match (moving, carried) {
                 (Some((axis, joint)), _) => write_joint(&mut splice, part, &axis, base_from_parent, joint),
@@ -56,18 +56,18 @@ impl UrdfDocument {
                 (None, None) => base_from_parent * part.parent_from_joint,
             });
         }
-        let mut added = Added { names: BTreeSet::new(), links: Vec::new() };
+        let mut added = AddedLinks { names: BTreeSet::new(), links: Vec::new() };
         let (mut links, mut notes) = (Vec::new(), self.changed_kinds(calibrated));
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
             // Mounts on the base link itself, and not on a link fixed to it, have the identity as their link's pose.
             let is_base = end.part.is_none() && end.link == self.robot.base_name;
             let base_from_link =
-                if is_base { Pose::identity() } else { self.below(&base_from_links, end.part) };
-            if close(&base_from_link, wanted) {
+                if is_base { Pose::identity() } else { self.link_pose(&base_from_links, end.part) };
+            if are_close(&base_from_link, wanted) {
                 links.push(end.link.clone());
                 continue;
             }
-            let known = added.links.iter().find(|(of, pose, _)| *of == end.link && close(pose, wanted));
+            let known = added.links.iter().find(|(of, pose, _)| *of == end.link && are_close(pose, wanted));
             if let Some((_, _, name)) = known {
                 links.push(name.clone());
                 continue;
@@ -77,7 +77,13 @@ impl UrdfDocument {
             };
             let name = self.free_name(&end.link, &added);
             let (xyz, rpy) = origin_values(&(base_from_link.inverse() * *wanted));
-            splice.add_link(&place.place, &escaped(&end.link), &escaped(&name), &triple(xyz), &triple(rpy));
+            splice.add_link(
+                &place.place,
+                &escape_attribute(&end.link),
+                &escape_attribute(&name),
+                &format_triple(xyz),
+                &format_triple(rpy),
+            );
             let what = self.end_words(index);
             notes.push(format!(
                 "link `{name}` was added below `{}` to hold the calibrated {what}, since no fixed joint {}",
@@ -106,11 +112,11 @@ impl UrdfDocument {
     }
 
     /// `base_from_link` of each end at zero joint values.
-    fn wanted(&self, calibrated: &Robot) -> Result<Vec<Pose>> {
+    fn end_poses(&self, calibrated: &Robot) -> Result<Vec<Pose>> {
         let place = |mount: &Mount, among: &[Mount], what: &str| {
             let found = among.iter().find(|other| other.name == mount.name && other.body == mount.body);
             found.map(|found| calibrated.base_from(found)).ok_or_else(|| {
-                self.other(&format!("the calibrated robot has no {what} `{}` there", mount.name))
+                self.other_robot_error(&format!("the calibrated robot has no {what} `{}` there", mount.name))
             })
         };
         let robot = &self.robot;
@@ -125,12 +131,12 @@ impl UrdfDocument {
         }
         match wanted.iter().all(is_finite) {
             true => Ok(wanted),
-            false => Err(self.other("an instrument or a target is not at a finite place")),
+            false => Err(self.other_robot_error("an instrument or a target is not at a finite place")),
         }
     }
 
     /// For each joint, the pose of the link below it, if the joint is fixed and holds an end: no moving joint follows it.
-    fn carried(&self, wanted: &[Pose]) -> Vec<Option<Pose>> {
+    fn carried_poses(&self, wanted: &[Pose]) -> Vec<Option<Pose>> {
         let mut leads = vec![false; self.parts.len()];
         for (index, part) in self.parts.iter().enumerate().rev() {
             let moves = part.axis.is_some() || leads.get(index).copied().unwrap_or(false);
@@ -159,7 +165,7 @@ impl UrdfDocument {
         }
     }
 
-    fn other(&self, found: &str) -> Error {
+    fn other_robot_error(&self, found: &str) -> Error {
         ErrorKind::Export
             .error(format!("{found}, expected the robot that was read from {}", self.path.display()))
     }
@@ -170,23 +176,25 @@ impl UrdfDocument {
             joints.map(|(at, joint)| (joint.name.clone(), joint.kind, robot.body_before(at))).collect()
         };
         if stands(calibrated) != stands(&self.robot) || calibrated.tip_body() != self.robot.tip_body() {
-            return Err(self.other("the calibrated robot has other joints"));
+            return Err(self.other_robot_error("the calibrated robot has other joints"));
         }
         for joint in &calibrated.joints {
             if !is_finite(&joint.frame) || !is_finite(&joint.screw.exp(0.0)) {
-                return Err(self.other(&format!("joint `{}` is not at a finite place", joint.name)));
+                return Err(
+                    self.other_robot_error(&format!("joint `{}` is not at a finite place", joint.name))
+                );
             }
         }
         if !is_finite(&calibrated.home) {
-            return Err(self.other("the home pose is not at a finite place"));
+            return Err(self.other_robot_error("the home pose is not at a finite place"));
         }
         Ok(())
     }
 
     /// A name of a link that is not in the text.
-    fn free_name(&self, link: &str, added: &Added) -> String {
+    fn free_name(&self, link: &str, added: &AddedLinks) -> String {
         let mut name = format!("{link}_calibrated");
-        while self.text.contains(&escaped(&name)) || added.names.contains(&name) {
+        while self.text.contains(&escape_attribute(&name)) || added.names.contains(&name) {
             name.push('_');
         }
         name
@@ -194,7 +202,7 @@ impl UrdfDocument {
 }
 
 /// Links that were added, and their purpose: the parent link of each, and its pose in the base.
-struct Added {
+struct AddedLinks {
     names: BTreeSet<String>,
     links: Vec<(String, Pose, String)>,
 }
@@ -206,7 +214,7 @@ fn is_finite(pose: &Pose) -> bool {
 /// Writes a moving joint's origin, and its axis if it is not that of the frame. Returns the frame by the numbers of the text.
 fn write_joint(
     splice: &mut Splice,
-    part: &Part,
+    part: &UrdfJoint,
     axis: &Vector3<f64>,
     base_from_link: Pose,
     joint: &Joint,
@@ -215,7 +223,7 @@ fn write_joint(
     let written = write_origin(splice, part, base_from_link, &frame);
     let direction = written.rotation.transpose() * joint.screw.direction();
     if (direction - axis).norm() > AXIS_TOLERANCE || !part.has_unit_axis() {
-        splice.set_axis(&part.place, triple(tidy(direction.into())));
+        splice.set_axis(&part.place, format_triple(tidy_numbers(direction.into())));
     }
     if is_made_continuous(part, joint) {
         splice.set_kind(&part.place, "continuous");
@@ -224,7 +232,7 @@ fn write_joint(
 }
 
 /// True if a joint without a range is written as one that rotates without limits.
-fn is_made_continuous(part: &Part, joint: &Joint) -> bool {
+fn is_made_continuous(part: &UrdfJoint, joint: &Joint) -> bool {
     part.is_without_range && joint.kind == JointKind::Revolute && joint.limits.is_none()
 }
 
@@ -239,9 +247,9 @@ pub(crate) fn frame_on_axis(frame: &Pose, screw: &Screw) -> Pose {
 }
 
 /// Writes the changed parts of an origin so that the frame is at `target`. Returns the frame by the numbers of the text.
-fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: &Pose) -> Pose {
+fn write_origin(splice: &mut Splice, part: &UrdfJoint, base_from_link: Pose, target: &Pose) -> Pose {
     let unchanged = base_from_link * part.parent_from_joint;
-    if close(&unchanged, target) {
+    if are_close(&unchanged, target) {
         return unchanged;
     }
     let wanted = base_from_link.inverse() * *target;
@@ -259,18 +267,18 @@ fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: 
         };
     }
     let turn = |()| match part.place.is_quaternion {
-        true => wanted.quaternion_xyzw().map(shortest).join(" "),
-        false => triple(rpy),
+        true => wanted.quaternion_xyzw().map(format_shortest).join(" "),
+        false => format_triple(rpy),
     };
-    splice.set_origin(&part.place, moved.then(|| triple(xyz)), turned.then_some(()).map(turn));
+    splice.set_origin(&part.place, moved.then(|| format_triple(xyz)), turned.then_some(()).map(turn));
     base_from_link * written
 }
 
 /// `xyz` and `rpy` of an origin.
 pub fn origin_values(pose: &Pose) -> ([f64; 3], [f64; 3]) {
-    (tidy(pose.translation.into()), tidy(rotation::to_rpy(&pose.rotation)))
+    (tidy_numbers(pose.translation.into()), tidy_numbers(rotation::to_rpy(&pose.rotation)))
 }
 
-fn close(a: &Pose, b: &Pose) -> bool {
+fn are_close(a: &Pose, b: &Pose) -> bool {
     (a.translation - b.translation).amax() < UNCHANGED && (a.rotation - b.rotation).amax() < UNCHANGED
 }

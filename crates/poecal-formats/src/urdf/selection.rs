@@ -41,7 +41,7 @@ impl ChainSelection {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if one of them has two links.
-    pub fn joined(mut self, instruments: &[(String, String)], targets: &[(String, String)]) -> Result<Self> {
+    pub fn join(mut self, instruments: &[(String, String)], targets: &[(String, String)]) -> Result<Self> {
         for (what, ours, further) in
             [("instrument", &mut self.instruments, instruments), ("target", &mut self.targets, targets)]
         {
@@ -84,9 +84,9 @@ mod tests {
     fn a_link_may_be_named_twice_but_not_two_links() {
         let on = |link: &str| vec![("camera".to_owned(), link.to_owned())];
         let typed = ChainSelection { instruments: on("head"), ..ChainSelection::default() };
-        assert_eq!(typed.clone().joined(&on("head"), &[]).unwrap(), typed);
+        assert_eq!(typed.clone().join(&on("head"), &[]).unwrap(), typed);
         assert_eq!(
-            typed.joined(&on("hand"), &[]).unwrap_err().to_string(),
+            typed.join(&on("hand"), &[]).unwrap_err().to_string(),
             "found instrument `camera` on link `head` and on link `hand`, expected one link"
         );
     }

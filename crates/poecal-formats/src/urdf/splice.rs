@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::parts::Place;
-use poecal_storage::numbers::shortest;
+use super::urdf_joints::JointSpans;
+use poecal_storage::numbers::format_shortest;
 
 /// Replacements in a text.
 pub(crate) struct Splice<'a> {
@@ -29,7 +29,7 @@ impl<'a> Splice<'a> {
     }
 
     /// Sets the passed values of `<origin>`, and the element itself if there is none.
-    pub(crate) fn set_origin(&mut self, place: &Place, xyz: Option<String>, rpy: Option<String>) {
+    pub(crate) fn set_origin(&mut self, place: &JointSpans, xyz: Option<String>, rpy: Option<String>) {
         if let Some(after_name) = place.origin {
             if let Some(xyz) = xyz {
                 self.set(place.xyz.as_ref(), after_name, "xyz", xyz);
@@ -48,12 +48,12 @@ impl<'a> Splice<'a> {
     }
 
     /// Sets the joint's type.
-    pub(crate) fn set_kind(&mut self, place: &Place, kind: &str) {
+    pub(crate) fn set_kind(&mut self, place: &JointSpans, kind: &str) {
         self.edits.extend(place.kind.clone().map(|range| (range, kind.to_owned())));
     }
 
     /// Sets `<axis xyz>`, and the element itself if there is none.
-    pub(crate) fn set_axis(&mut self, place: &Place, xyz: String) {
+    pub(crate) fn set_axis(&mut self, place: &JointSpans, xyz: String) {
         match place.axis {
             Some(after_name) => self.set(place.axis_xyz.as_ref(), after_name, "xyz", xyz),
             None => {
@@ -64,7 +64,7 @@ impl<'a> Splice<'a> {
     }
 
     /// Adds a link and its fixed joint after a joint's element, with the same indentation. Names are escaped.
-    pub(crate) fn add_link(&mut self, after: &Place, parent: &str, link: &str, xyz: &str, rpy: &str) {
+    pub(crate) fn add_link(&mut self, after: &JointSpans, parent: &str, link: &str, xyz: &str, rpy: &str) {
         let outer = self.space_before(after.element.start);
         let inner = self.space_before(after.first_child);
         self.insert(
@@ -102,12 +102,12 @@ impl<'a> Splice<'a> {
 }
 
 /// Three numbers as an attribute value.
-pub(crate) fn triple(numbers: [f64; 3]) -> String {
-    numbers.map(shortest).join(" ")
+pub(crate) fn format_triple(numbers: [f64; 3]) -> String {
+    numbers.map(format_shortest).join(" ")
 }
 
 /// A name as an attribute value.
-pub fn escaped(name: &str) -> String {
+pub fn escape_attribute(name: &str) -> String {
     let mut text = String::with_capacity(name.len());
     for character in name.chars() {
         match character {

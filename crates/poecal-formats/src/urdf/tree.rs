@@ -42,7 +42,7 @@ impl JointType {
     }
 }
 
-/// A joint between two links, which are indices into [`Tree::links`].
+/// A joint between two links, which are indices into [`UrdfTree::links`].
 pub(crate) struct TreeJoint<'a> {
     pub(crate) name: &'a str,
     pub(crate) kind: JointType,
@@ -52,7 +52,7 @@ pub(crate) struct TreeJoint<'a> {
 }
 
 /// All links and joints; every link has at most one parent joint, and there is no loop.
-pub(crate) struct Tree<'a> {
+pub(crate) struct UrdfTree<'a> {
     pub(crate) source: XmlSource<'a>,
     pub(crate) links: Vec<&'a str>,
     pub(crate) joints: Vec<TreeJoint<'a>>,
@@ -62,19 +62,19 @@ pub(crate) struct Tree<'a> {
     joint_indices: BTreeMap<&'a str, usize>,
 }
 
-impl<'a> Tree<'a> {
+impl<'a> UrdfTree<'a> {
     pub(crate) fn read(source: XmlSource<'a>) -> Result<Self> {
         let robot = source.document.root_element();
         let (mut links, mut link_indices) = (Vec::new(), BTreeMap::new());
         for node in source.children(robot, "link") {
-            let (name, _) = source.required(node, "name", "the link")?;
+            let (name, _) = source.require_attribute(node, "name", "the link")?;
             if link_indices.insert(name, links.len()).is_some() {
                 let message = format!("found a second link named `{name}`, expected unique link names");
                 return Err(source.error(node, message));
             }
             links.push(name);
         }
-        let mut tree = Tree {
+        let mut tree = UrdfTree {
             source,
             joint_above: vec![None; links.len()],
             links,
@@ -114,14 +114,14 @@ impl<'a> Tree<'a> {
     }
 
     /// Parent joint of a link, with its index.
-    pub(crate) fn above(&self, link: usize) -> Option<(usize, &TreeJoint<'a>)> {
+    pub(crate) fn parent_joint(&self, link: usize) -> Option<(usize, &TreeJoint<'a>)> {
         let index = self.joint_above.get(link).copied().flatten()?;
         Some((index, self.joints.get(index)?))
     }
 
     /// Joints above a link, upwards.
     pub(crate) fn ancestors(&self, link: usize) -> impl Iterator<Item = (usize, &TreeJoint<'a>)> {
-        std::iter::successors(self.above(link), |(_, joint)| self.above(joint.parent))
+        std::iter::successors(self.parent_joint(link), |(_, joint)| self.parent_joint(joint.parent))
     }
 
     pub(crate) fn link_name(&self, link: usize) -> &'a str {
@@ -148,7 +148,7 @@ impl<'a> Tree<'a> {
             let way = std::iter::once(link).chain(above).take_while(|&at| !rooted[at]);
             // A path longer than the number of links visits one of them twice.
             let way: Vec<usize> = way.take(self.links.len() + 1).collect();
-            if let Some((_, joint)) = way.get(self.links.len()).and_then(|&at| self.above(at)) {
+            if let Some((_, joint)) = way.get(self.links.len()).and_then(|&at| self.parent_joint(at)) {
                 let message = format!(
                     "joint `{}` closes a loop of links, expected a tree with one root link",
                     joint.name
@@ -166,9 +166,9 @@ fn read_joint<'a>(
     node: Node<'a, 'a>,
     links: &BTreeMap<&'a str, usize>,
 ) -> Result<TreeJoint<'a>> {
-    let (name, _) = source.required(node, "name", "the joint")?;
+    let (name, _) = source.require_attribute(node, "name", "the joint")?;
     let of = format!("joint `{name}`");
-    let (word, attribute) = source.required(node, "type", &of)?;
+    let (word, attribute) = source.require_attribute(node, "type", &of)?;
     let kind = JointType::of_word(word).ok_or_else(|| {
         let message = format!(
             "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
@@ -179,7 +179,7 @@ fn read_joint<'a>(
         let Some(element) = source.only_child(node, role, &of, false)? else {
             return Err(source.error(node, format!("{of} has no <{role}>, expected <{role} link=\"...\"/>")));
         };
-        let (link, attribute) = source.required(element, "link", &format!("<{role}> of {of}"))?;
+        let (link, attribute) = source.require_attribute(element, "link", &format!("<{role}> of {of}"))?;
         links.get(link).copied().ok_or_else(|| {
             let names: Vec<&str> = links.keys().copied().collect();
             let known = nearest_or_all(link, &names);

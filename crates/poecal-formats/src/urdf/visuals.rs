@@ -5,12 +5,12 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::parts::{fixed_pose, read_origin};
-use super::tree::Tree;
+use super::tree::UrdfTree;
+use super::urdf_joints::{fixed_pose, read_origin};
 use super::{EXPECTED, UrdfDocument};
 use poecal_arm::lie::Pose;
 use poecal_model::robot::Body;
-use poecal_storage::xml::{XmlSource, parsed, readable};
+use poecal_storage::xml::{XmlSource, declare_prefixes, parsed};
 
 /// Largest number of shapes of a file.
 const MOST: usize = 4000;
@@ -69,10 +69,10 @@ impl UrdfDocument {
     /// The shapes of one element, or of another if there are none.
     fn shapes(&self, first: &'static str, else_of: &'static str) -> Vec<Visual> {
         let path = Path::new(&self.path);
-        let text = readable(&self.text);
+        let text = declare_prefixes(&self.text);
         let Ok(document) = parsed(&text, path, EXPECTED) else { return Vec::new() };
         let source = XmlSource { document: &document, path };
-        let Ok(tree) = Tree::read(source) else { return Vec::new() };
+        let Ok(tree) = UrdfTree::read(source) else { return Vec::new() };
         let links = self.links(&tree);
         let of = |element: &'static str| -> Vec<Visual> {
             let robot = document.root_element();
@@ -87,7 +87,7 @@ impl UrdfDocument {
     }
 
     /// Body and pose in the base of each link of the tree, with all joints at zero; `None` if an origin above it cannot be read.
-    fn links(&self, tree: &Tree) -> Vec<Option<(Body, Pose)>> {
+    fn links(&self, tree: &UrdfTree) -> Vec<Option<(Body, Pose)>> {
         let joints = self.robot.joints.iter().enumerate();
         let bodies: BTreeMap<&str, usize> = joints.map(|(k, joint)| (joint.name.as_str(), k)).collect();
         let mut known: Vec<Option<Option<(Body, Pose)>>> = vec![None; tree.links.len()];
@@ -96,7 +96,7 @@ impl UrdfDocument {
             let up = std::iter::once(link).chain(tree.ancestors(link).map(|(_, joint)| joint.parent));
             let way: Vec<usize> = up.take_while(|&at| known[at].is_none()).collect();
             for at in way.into_iter().rev() {
-                known[at] = Some(match tree.above(at) {
+                known[at] = Some(match tree.parent_joint(at) {
                     None => Some((Body::Base, Pose::identity())),
                     Some((_, joint)) => known[joint.parent].flatten().and_then(|(body, pose)| {
                         let own = bodies.get(joint.name).map_or(body, |&k| Body::Link(k));

@@ -4,15 +4,15 @@ use std::fmt::Write;
 
 use super::ChainSelection;
 use super::patch::{frame_on_axis, origin_values};
-use super::splice::{escaped, triple};
+use super::splice::{escape_attribute, format_triple};
 use poecal_arm::lie::Pose;
-use poecal_model::robot::{Body, Joint, JointKind, Limits, MEASURED, Robot};
+use poecal_model::robot::{Body, Joint, JointKind, JointLimits, MEASURED, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::numbers::{shortest, tidy};
+use poecal_storage::numbers::{format_shortest, tidy_numbers};
 
 /// A model in another form.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Converted {
+pub struct ConvertedModel {
     /// The whole text.
     pub text: String,
     /// Losses and additions, a sentence each.
@@ -20,21 +20,21 @@ pub struct Converted {
 }
 
 /// Limits of a prismatic joint without limits, metres: URDF requires some.
-pub(crate) const WIDE_LIMITS: Limits = Limits { lower: -1000.0, upper: 1000.0 };
+pub(crate) const WIDE_LIMITS: JointLimits = JointLimits { lower: -1000.0, upper: 1000.0 };
 
 /// Writes a robot as a new URDF: base link, one link for each joint, and the tip on a fixed joint. Instruments, and targets with a body of their
 /// own, are links on fixed joints too.
 ///
 /// # Errors
 /// [`ErrorKind::Export`] if URDF cannot express a joint's reading (a factor or offset on its own reading).
-pub fn write_new(robot: &Robot) -> Result<Converted> {
+pub fn write_new(robot: &Robot) -> Result<ConvertedModel> {
     written_new(robot).map(|(converted, _)| converted)
 }
 
 /// Writes it, and returns the selection that yields the robot from the text.
-pub fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
+pub fn written_new(robot: &Robot) -> Result<(ConvertedModel, ChainSelection)> {
     let text = UrdfText::of_robot(&robot.name);
-    let mut writer = Writer { text, notes: Vec::new(), links: vec![robot.tip_name.clone()] };
+    let mut writer = UrdfWriter { text, notes: Vec::new(), links: vec![robot.tip_name.clone()] };
     let base = writer.link(&robot.base_name);
     writer.leaders(robot, &base);
     // Name of each joint's link, and its pose by the numbers of the text.
@@ -84,7 +84,7 @@ pub fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
     }
     let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
     let selection = ChainSelection::from_links(robot, &ends);
-    Ok((Converted { text: writer.text.finish(), notes: writer.notes }, selection))
+    Ok((ConvertedModel { text: writer.text.finish(), notes: writer.notes }, selection))
 }
 
 /// The text of a URDF, line by line.
@@ -93,7 +93,7 @@ pub(crate) struct UrdfText(String);
 impl UrdfText {
     /// The first lines of a robot.
     pub(crate) fn of_robot(name: &str) -> Self {
-        UrdfText(format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(name)))
+        UrdfText(format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escape_attribute(name)))
     }
 
     pub(crate) fn line(&mut self, depth: usize, line: &str) {
@@ -102,34 +102,39 @@ impl UrdfText {
     }
 
     pub(crate) fn link(&mut self, name: &str) {
-        self.line(1, &format!("<link name=\"{}\"/>", escaped(name)));
+        self.line(1, &format!("<link name=\"{}\"/>", escape_attribute(name)));
     }
 
     /// Writes an origin, and returns it by the numbers of the text.
     pub(crate) fn origin(&mut self, depth: usize, pose: &Pose) -> Pose {
         let (xyz, rpy) = origin_values(pose);
-        self.line(depth, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(xyz), triple(rpy)));
+        self.line(depth, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", format_triple(xyz), format_triple(rpy)));
         Pose::from_xyz_rpy(xyz, rpy)
     }
 
     /// Begins a joint from a parent to a child.
     pub(crate) fn open_joint(&mut self, name: &str, kind: &str, (parent, child): (&str, &str)) {
-        self.line(1, &format!("<joint name=\"{}\" type=\"{kind}\">", escaped(name)));
-        self.line(2, &format!("<parent link=\"{}\"/>", escaped(parent)));
-        self.line(2, &format!("<child link=\"{}\"/>", escaped(child)));
+        self.line(1, &format!("<joint name=\"{}\" type=\"{kind}\">", escape_attribute(name)));
+        self.line(2, &format!("<parent link=\"{}\"/>", escape_attribute(parent)));
+        self.line(2, &format!("<child link=\"{}\"/>", escape_attribute(child)));
     }
 
     pub(crate) fn axis(&mut self, axis: [f64; 3]) {
-        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(axis)));
+        self.line(2, &format!("<axis xyz=\"{}\"/>", format_triple(axis)));
     }
 
-    pub(crate) fn limits(&mut self, limits: Limits) {
-        let limits = format!("lower=\"{}\" upper=\"{}\"", shortest(limits.lower), shortest(limits.upper));
+    pub(crate) fn limits(&mut self, limits: JointLimits) {
+        let limits = format!(
+            "lower=\"{}\" upper=\"{}\"",
+            format_shortest(limits.lower),
+            format_shortest(limits.upper)
+        );
         self.line(2, &format!("<limit {limits} effort=\"0\" velocity=\"0\"/>"));
     }
 
     pub(crate) fn mimic(&mut self, joint: &str, multiplier: f64, offset: f64) {
-        let (joint, multiplier, offset) = (escaped(joint), shortest(multiplier), shortest(offset));
+        let (joint, multiplier, offset) =
+            (escape_attribute(joint), format_shortest(multiplier), format_shortest(offset));
         self.line(2, &format!("<mimic joint=\"{joint}\" multiplier=\"{multiplier}\" offset=\"{offset}\"/>"));
     }
 
@@ -144,13 +149,13 @@ impl UrdfText {
     }
 }
 
-struct Writer {
+struct UrdfWriter {
     text: UrdfText,
     notes: Vec<String>,
     links: Vec<String>,
 }
 
-impl Writer {
+impl UrdfWriter {
     /// Writes a link with a free name, and returns the name.
     fn link(&mut self, wanted: &str) -> String {
         let mut name = wanted.to_owned();
@@ -162,7 +167,7 @@ impl Writer {
         name
     }
 
-    fn limits(&mut self, limits: Limits) {
+    fn limits(&mut self, limits: JointLimits) {
         self.text.limits(limits);
         let note = "effort and velocity limits are not known and were written as 0, since URDF demands them";
         if !self.notes.iter().any(|known| known == note) {
@@ -213,7 +218,7 @@ impl Writer {
         self.text.open_joint(&joint.name, kind, ends);
         let origin = self.text.origin(2, origin);
         let direction = joint.frame.rotation.transpose() * joint.screw.direction();
-        self.text.axis(tidy(direction.into()));
+        self.text.axis(tidy_numbers(direction.into()));
         match (joint.limits, joint.kind) {
             (Some(limits), _) => self.limits(limits),
             (None, JointKind::Prismatic) => self.wide_limit(&joint.name),

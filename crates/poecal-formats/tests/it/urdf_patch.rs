@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist, rotation};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_model::robot::Robot;
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -21,12 +21,12 @@ impl Random {
         Random(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    fn within(&mut self, span: f64) -> f64 {
+    fn draw_within(&mut self, span: f64) -> f64 {
         span * (2.0 * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 1.0)
     }
 
     fn vector(&mut self, span: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| self.within(span))
+        Vector3::from_fn(|_, _| self.draw_within(span))
     }
 
     fn one_in(&mut self, count: u64) -> bool {
@@ -94,9 +94,9 @@ fn parse(text: &str, tip: &str) -> UrdfDocument {
 }
 
 /// The robot with every screw and the home pose moved by about 3° and 15 mm.
-fn disturbed(robot: &Robot, random: &mut Random) -> Robot {
+fn disturb_robot(robot: &Robot, random: &mut Random) -> Robot {
     let mut motion = || Pose::exp(&Twist::new(random.vector(0.015), random.vector(0.05)));
-    let screws: Vec<Screw> = robot.joints.iter().map(|joint| joint.screw.transformed(&motion())).collect();
+    let screws: Vec<Screw> = robot.joints.iter().map(|joint| joint.screw.transform(&motion())).collect();
     let mut calibrated = robot.with_screws(&screws);
     calibrated.home = (motion() * robot.home).orthonormalized();
     calibrated
@@ -105,10 +105,10 @@ fn disturbed(robot: &Robot, random: &mut Random) -> Robot {
 fn largest_difference(a: &Robot, b: &Robot, random: &mut Random) -> f64 {
     assert_eq!(a.reading_names(), b.reading_names());
     (0..20).fold(0.0, |largest, _| {
-        let readings: Vec<f64> = a.reading_names().iter().map(|_| random.within(2.0)).collect();
+        let readings: Vec<f64> = a.reading_names().iter().map(|_| random.draw_within(2.0)).collect();
         let (a, b) = (a.forward_kinematics(&readings), b.forward_kinematics(&readings));
         let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
-        larger(larger(largest, (a.translation - b.translation).norm()), turn)
+        larger_or_nan(larger_or_nan(largest, (a.translation - b.translation).norm()), turn)
     })
 }
 
@@ -121,15 +121,15 @@ fn random_robots_read_back_as_they_were_calibrated() {
         let text = random_urdf(&mut random, 2.5);
         let tip = format!("l{}", text.matches("<visual>").count() - 1);
         let urdf = parse(&text, &tip);
-        let calibrated = disturbed(urdf.robot(), &mut random);
-        let patched = urdf.patched(&calibrated).unwrap();
+        let calibrated = disturb_robot(urdf.robot(), &mut random);
+        let patched = urdf.patch(&calibrated).unwrap();
         let again = parse(&patched.text, &patched.tip_link);
         let difference = largest_difference(&calibrated, again.robot(), &mut random);
         assert!(difference < TOLERANCE, "seed {seed}: {difference:e}\n{text}\n{}", patched.text);
         assert_eq!(again.robot().joints.len(), calibrated.joints.len());
         // The model that was read back needs no further change.
-        assert_eq!(again.patched(again.robot()).unwrap().text, patched.text);
-        largest = larger(largest, difference);
+        assert_eq!(again.patch(again.robot()).unwrap().text, patched.text);
+        largest = larger_or_nan(largest, difference);
     }
     println!("largest difference over {} robots: {largest:.1e}", robots.count);
 }
@@ -141,7 +141,7 @@ fn an_unchanged_robot_leaves_every_byte() {
         let text = random_urdf(&mut Random::new(seed), 1.0).replace("'revolute'", "'continuous'");
         let tip = format!("l{}", text.matches("<visual>").count() - 1);
         let urdf = parse(&text, &tip);
-        let patched = urdf.patched(urdf.robot()).unwrap();
+        let patched = urdf.patch(urdf.robot()).unwrap();
         assert_eq!((patched.text, patched.tip_link, patched.notes), (text, tip, vec![]));
     }
 }
@@ -158,15 +158,15 @@ fn only_changed_values_are_replaced_and_missing_ones_inserted() {
     let mut calibrated = urdf.robot().clone();
     let shift = Pose::from_translation(Vector3::new(0.0, 0.0, 0.125));
     calibrated.joints[1].frame = shift * calibrated.joints[1].frame;
-    calibrated.joints[1].screw = calibrated.joints[1].screw.transformed(&shift);
+    calibrated.joints[1].screw = calibrated.joints[1].screw.transform(&shift);
     calibrated.home = shift * calibrated.home;
-    let patched = urdf.patched(&calibrated).unwrap();
+    let patched = urdf.patch(&calibrated).unwrap();
     let joint2 = "type=\"continuous\">\r\n\t\t";
     assert_eq!(patched.text, TEXT.replace(joint2, &format!("{joint2}<origin xyz=\"0 0 0.125\"/>\r\n\t\t")));
     assert_eq!((patched.tip_link.as_str(), patched.notes.len()), ("hand", 0));
 
     calibrated.home.rotation = rotation::about(2, 0.25);
-    let patched = urdf.patched(&calibrated).unwrap();
+    let patched = urdf.patch(&calibrated).unwrap();
     let added = "</joint>\r\n\t<link name=\"hand_calibrated\"/>\r\n\t<joint name=\"hand_calibrated_joint\" type=\"fixed\">\r\n\
                  \t\t<parent link=\"hand\"/>\r\n\t\t<child link=\"hand_calibrated\"/>\r\n\
                  \t\t<origin xyz=\"0 0 0\" rpy=\"0 0 0.25\"/>\r\n\t</joint>\r\n</robot>\r\n";
@@ -187,7 +187,7 @@ fn an_axis_that_leaves_its_frame_is_written() {
     // Only the screws change: the frames do not follow.
     calibrated.joints[0].screw = Screw::revolute(&Vector3::new(0.0, 0.6, 0.8), &Vector3::new(0.5, 0.0, 0.3));
     calibrated.joints[1].screw = Screw::revolute(&Vector3::y(), &Vector3::new(0.0, 0.0, 0.25));
-    let patched = urdf.patched(&calibrated).unwrap();
+    let patched = urdf.patch(&calibrated).unwrap();
     assert!(patched.text.contains("xyz='0.5 0 0.3'/> <!-- measured -->\r\n\t\t<axis xyz=\"0 0.6 0.8\"/>"));
     assert!(patched.text.contains("<axis xyz=\"0 1 0\"/>\r\n\t\t<parent"), "{}", patched.text);
     let again = parse(&patched.text, &patched.tip_link);
@@ -200,13 +200,13 @@ fn another_robot_is_refused() {
     let mut other = urdf.robot().clone();
     other.joints.pop();
     assert_eq!(
-        urdf.patched(&other).unwrap_err().to_string(),
+        urdf.patch(&other).unwrap_err().to_string(),
         "the calibrated robot has other joints, expected the robot that was read from test.urdf"
     );
     let mut other = urdf.robot().clone();
     other.home.translation.x = f64::NAN;
     assert_eq!(
-        urdf.patched(&other).unwrap_err().to_string(),
+        urdf.patch(&other).unwrap_err().to_string(),
         "the home pose is not at a finite place, expected the robot that was read from test.urdf"
     );
 }
@@ -225,7 +225,7 @@ fn axes_are_written_as_unit_vectors_and_endless_joints_as_continuous() {
             "joints without `lower` and `upper`, which others refuse or hold at 0: `turn`; state them, or type=\"continuous\" if the joint turns without end"
         ]
     );
-    let patched = urdf.patched(urdf.robot()).unwrap();
+    let patched = urdf.patch(urdf.robot()).unwrap();
     assert_eq!(
         patched.text,
         text.replace("\"0 2 0\"", "\"0 1 0\"").replace("type=\"revolute\"", "type=\"continuous\"")
@@ -251,9 +251,9 @@ fn quaternions_count_by_the_version_of_the_text() {
         let urdf = parse(&own, "b");
         assert!((urdf.robot().home.rotation - turned.robot().home.rotation).amax() < 1e-15);
         assert!(urdf.remarks().is_empty());
-        assert_eq!(urdf.patched(urdf.robot()).unwrap().text, own);
-        let calibrated = disturbed(urdf.robot(), &mut Random::new(1));
-        let again = parse(&urdf.patched(&calibrated).unwrap().text, "b_calibrated");
+        assert_eq!(urdf.patch(urdf.robot()).unwrap().text, own);
+        let calibrated = disturb_robot(urdf.robot(), &mut Random::new(1));
+        let again = parse(&urdf.patch(&calibrated).unwrap().text, "b_calibrated");
         assert!(largest_difference(&calibrated, again.robot(), &mut Random::new(2)) < TOLERANCE);
     }
     for version in ["", " version=\"1.0\""] {

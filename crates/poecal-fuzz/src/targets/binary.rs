@@ -1,26 +1,26 @@
 //! Workbooks, bags and pictures: bytes whose checksums are corrected, so that the data behind them are reached.
 
-use poecal_detect::{Detector, Picture, Spec};
-use poecal_storage::limits::{self, Limit, Limits};
+use poecal_detect::{BoardSpec, Detector, GrayPicture};
+use poecal_storage::limits::{self, ResourceLimit, ResourceLimits};
 
 use super::recorded::{NAMES, read_files};
 use crate::properties::one_line;
 use crate::{BETWEEN, LONGEST};
 
 /// Limits for an input of this size.
-fn low() -> Limits {
+fn low_limits() -> ResourceLimits {
     [
-        (Limit::Cells, 50_000),
-        (Limit::Unpacked, 4 << 20),
-        (Limit::Bag, 8 << 20),
-        (Limit::Chunk, 1 << 20),
-        (Limit::Topics, 500),
-        (Limit::Poses, 20_000),
-        (Limit::Rows, 5_000),
-        (Limit::Columns, 500),
+        (ResourceLimit::Cells, 50_000),
+        (ResourceLimit::Unpacked, 4 << 20),
+        (ResourceLimit::Bag, 8 << 20),
+        (ResourceLimit::Chunk, 1 << 20),
+        (ResourceLimit::Topics, 500),
+        (ResourceLimit::Poses, 20_000),
+        (ResourceLimit::Rows, 5_000),
+        (ResourceLimit::Columns, 500),
     ]
     .into_iter()
-    .fold(Limits::default(), |all, (limit, most)| all.with(limit, most))
+    .fold(ResourceLimits::default(), |all, (limit, most)| all.with_limit(limit, most))
 }
 
 /// Files, of which one may be a companion; their bytes are mended.
@@ -39,7 +39,7 @@ fn read(data: &[u8], mend: impl Fn(&[u8]) -> Vec<u8>) -> bool {
     }
     let files = files(data, mend);
     let named: Vec<(&str, &[u8])> = NAMES.into_iter().zip(files.iter().map(Vec::as_slice)).collect();
-    limits::on(low(), || read_files(&named))
+    limits::run_with_limits(low_limits(), || read_files(&named))
 }
 
 /// A workbook: an old one as it is, or the parts of an archive, each a line with its name and its content; optionally with a table.
@@ -56,7 +56,7 @@ pub fn bags(data: &[u8]) -> bool {
 }
 
 /// Bytes before the first of these, and behind them.
-fn cut<'a>(bytes: &'a [u8], at: &[u8]) -> (&'a [u8], Option<&'a [u8]>) {
+fn split_at_bytes<'a>(bytes: &'a [u8], at: &[u8]) -> (&'a [u8], Option<&'a [u8]>) {
     match bytes.windows(at.len()).position(|it| it == at) {
         Some(place) => (&bytes[..place], Some(&bytes[place + at.len()..])),
         None => (bytes, None),
@@ -69,8 +69,8 @@ fn archive(parts: &[u8]) -> Vec<u8> {
     let (between, mut rest) = (format!("\n{BETWEEN}\n"), Some(parts));
     while let Some(all) = rest {
         let part;
-        (part, rest) = cut(all, between.as_bytes());
-        let (name, content) = cut(part, b"\n");
+        (part, rest) = split_at_bytes(all, between.as_bytes());
+        let (name, content) = split_at_bytes(part, b"\n");
         let (name, content) = (&name[..name.len().min(200)], content.unwrap_or_default());
         let start = (bytes.len() as u32).to_le_bytes();
         let size = (content.len() as u32).to_le_bytes();
@@ -97,8 +97,8 @@ pub fn pictures(data: &[u8]) -> bool {
     if data.len() > LONGEST {
         return false;
     }
-    let bytes = if data.starts_with(b"\x89PNG") { mended(data) } else { data.to_vec() };
-    let Picture { gray, .. } = match Picture::decode_up_to(&bytes, "input".as_ref(), MOST[0]) {
+    let bytes = if data.starts_with(b"\x89PNG") { mend_checksums(data) } else { data.to_vec() };
+    let GrayPicture { gray, .. } = match GrayPicture::decode_up_to(&bytes, "input".as_ref(), MOST[0]) {
         Ok(picture) => picture,
         Err(refused) => {
             one_line(&refused.error.to_string());
@@ -110,7 +110,7 @@ pub fn pictures(data: &[u8]) -> bool {
     assert!(gray.levels().iter().all(|it| (0.0..=255.0).contains(it)));
     if count as u64 <= MOST[1] {
         for words in ["circles:4x3:10mm", "chessboard:5x4:10mm", "charuco:4x3:20mm:15mm:DICT_4X4_50"] {
-            let Ok(spec) = words.parse::<Spec>() else { continue };
+            let Ok(spec) = words.parse::<BoardSpec>() else { continue };
             let found = Detector::new(&spec).with_most_dots(500).detect(&gray);
             let corners = found.iter().flat_map(|it| &it.corners);
             corners.for_each(|it| assert!(it.u_px.is_finite() && it.v_px.is_finite() && it.sigma_px > 0.0));
@@ -120,7 +120,7 @@ pub fn pictures(data: &[u8]) -> bool {
 }
 
 /// A PNG file with the checksums of its chunks.
-fn mended(data: &[u8]) -> Vec<u8> {
+fn mend_checksums(data: &[u8]) -> Vec<u8> {
     let (mut bytes, mut at) = (data.to_vec(), 8);
     while let Some(size) = bytes.get(at..at + 4).and_then(|it| <[u8; 4]>::try_from(it).ok()) {
         let end = (at + 8).saturating_add(u32::from_be_bytes(size) as usize);

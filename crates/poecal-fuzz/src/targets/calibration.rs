@@ -7,44 +7,44 @@ use poecal_results::model::{Model, ModelSource};
 use poecal_results::predictions::{PredictionFrame, predict};
 use poecal_results::residuals::Residuals;
 
-use super::models::converted;
-use crate::properties::{PATH, certain, one_line, parts, text, understood};
+use super::models::convert_both_forms;
+use crate::properties::{PATH, certain, check_result, one_line, parts, text};
 
 /// A calibration: read, written, read again, and used as a robot.
 pub fn calibration(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
-    let Some(file) = understood(CalibrationFile::parse(&text, PATH), &text) else { return false };
-    same(&file);
-    let robots = [file.robot(), file.nominal_robot()].map(|robot| understood(robot, &text));
-    understood(file.base_from_device(), &text);
+    let Some(file) = check_result(CalibrationFile::parse(&text, PATH), &text) else { return false };
+    assert_round_trip(&file);
+    let robots = [file.robot(), file.nominal_robot()].map(|robot| check_result(robot, &text));
+    check_result(file.base_from_device(), &text);
     let [Some(robot), _] = robots else { return false };
     let names = robot.reading_names();
     let table = format!(
         "{}\n{}\n",
-        names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(","),
+        names.iter().map(|name| quote_name(name)).collect::<Vec<_>>().join(","),
         vec!["0.1"; names.len()].join(",")
     );
     let source = ModelSource::Calibration(Box::new(file));
     let model = Model { robot, source, path: PATH.into() };
-    converted(&model);
-    let corrected = understood(model.clone().corrected(), &text);
+    convert_both_forms(&model);
+    let corrected = check_result(model.clone().corrected_model(), &text);
     for model in std::iter::once(model).chain(corrected) {
-        let joints = understood(parse_joints(&table, PATH, &model.robot, &Default::default()), &table);
+        let joints = check_result(parse_joints(&table, PATH, &model.robot, &Default::default()), &table);
         for (frame, doubts) in [(PredictionFrame::Base, true), (PredictionFrame::Device, false)] {
             if let Some(joints) = &joints {
-                understood(predict(&model, joints, frame, None, doubts), "");
+                check_result(predict(&model, joints, frame, None, doubts), "");
             }
         }
     }
     true
 }
 
-fn quoted(name: &str) -> String {
+fn quote_name(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
 /// Asserts that written text reads back the same.
-pub(crate) fn same(file: &CalibrationFile) {
+pub(crate) fn assert_round_trip(file: &CalibrationFile) {
     let written = certain(file.to_text(), "to_text");
     let again = certain(CalibrationFile::parse(&written, PATH), &written);
     assert_eq!(&again, file);
@@ -54,8 +54,8 @@ pub(crate) fn same(file: &CalibrationFile) {
 /// A calibration and its residuals: the page.
 pub fn report(data: &[u8]) -> bool {
     let Some([json, csv]) = parts(data) else { return false };
-    let Some(file) = understood(CalibrationFile::parse(&json, PATH), &json) else { return false };
-    let Some(residuals) = understood(Residuals::parse(&csv, PATH), &csv) else { return false };
+    let Some(file) = check_result(CalibrationFile::parse(&json, PATH), &json) else { return false };
+    let Some(residuals) = check_result(Residuals::parse(&csv, PATH), &csv) else { return false };
     page(&file, &residuals)
 }
 

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use poecal_fit::hand_eye::{CameraPlace, HandEyeOptions, hand_eye as calibrated, tool_tip};
+use poecal_fit::hand_eye::{CameraMounting, HandEyeOptions, hand_eye as calibrated, tool_tip};
 use poecal_import::{PoseSource, PoseUnits, ReadOptions, read_flange_poses, read_pose_pairs};
-use poecal_report::Line;
+use poecal_report::FleetLine;
 use poecal_results::fleet::{LedgerRow, read_ledgers};
 use poecal_results::validation::History;
 
 use crate::one_file::with_files;
-use crate::properties::{PATH, one_line, parts, text, understood};
+use crate::properties::{PATH, check_result, one_line, parts, text};
 
 /// Most rows that are used in computations.
 const MOST_ROWS: usize = 40;
@@ -43,7 +43,7 @@ pub fn hand_eye(data: &[u8]) -> bool {
     if poses.flange.poses.len() > MOST_ROWS {
         return true;
     }
-    match calibrated(&poses.flange, &poses.target, &HandEyeOptions::new(CameraPlace::InHand), &row_name) {
+    match calibrated(&poses.flange, &poses.target, &HandEyeOptions::new(CameraMounting::InHand), &row_name) {
         Ok(found) => {
             assert!(format!("{found:?}").len() > 10 && !format!("{found:?}").contains("NaN"), "{found:?}")
         }
@@ -59,7 +59,7 @@ pub fn tcp(data: &[u8]) -> bool {
     let read = with_files(&[(&path, text.as_bytes())], || {
         read_flange_poses(Path::new(&path), PoseUnits::default(), None)
     });
-    let Some(poses) = understood(read, &text) else { return false };
+    let Some(poses) = check_result(read, &text) else { return false };
     poses.understood.iter().chain(&poses.warnings).for_each(|words| one_line(words));
     if poses.touches.flange.poses.len() <= MOST_ROWS
         && let Err(error) = tool_tip(&poses.touches, &row_name)
@@ -74,11 +74,11 @@ pub fn ledgers(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let path = format!("{PATH}.jsonl");
     let read = || with_files(&[(&path, text.as_bytes())], || read_ledgers(&[PathBuf::from(&path)]));
-    let Some(rows) = understood(read(), &text) else { return false };
+    let Some(rows) = check_result(read(), &text) else { return false };
     let written = |rows: &[LedgerRow]| serde_json::to_string(rows).unwrap_or_default();
     assert_eq!(read().map(|again| written(&again)).unwrap_or_default(), written(&rows));
     let count = rows.len();
-    if let Ok(line) = Line::from_rows(rows, None, &BTreeMap::new()) {
+    if let Ok(line) = FleetLine::from_rows(rows, None, &BTreeMap::new()) {
         assert!(line.text().starts_with("robots"));
         assert!(line.csv().lines().count() > count);
     }
@@ -90,7 +90,7 @@ pub fn histories(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let path = format!("{PATH}.jsonl");
     let read = || with_files(&[(&path, text.as_bytes())], || History::read(Path::new(&path)));
-    let Some(history) = understood(read(), &text) else { return false };
+    let Some(history) = check_result(read(), &text) else { return false };
     assert!(read().is_ok_and(|again| again == history));
     true
 }

@@ -3,8 +3,8 @@
 use poecal_import::{ColumnMap, ReadOptions, parse, parse_joints};
 use poecal_model::simulate::scara;
 
-use super::tables::{joints_sound, sound};
-use crate::properties::{PATH, text, understood};
+use super::tables::{assert_sound, joints_sound};
+use crate::properties::{PATH, check_result, text};
 
 /// Files for a mapping: one with names of its own, and one with two targets in a row.
 const FILES: [&str; 2] = [
@@ -17,13 +17,13 @@ const FILES: [&str; 2] = [
 /// A mapping: read, and applied to files.
 pub fn mapping(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
-    let Some(mapping) = understood(ColumnMap::parse(&text, PATH), &text) else { return false };
+    let Some(mapping) = check_result(ColumnMap::parse(&text, PATH), &text) else { return false };
     let (robot, options) = (scara(), ReadOptions { mapping: Some(mapping), ..ReadOptions::default() });
     for file in FILES {
-        if let Some(found) = understood(parse(file, PATH, &robot, &options), file) {
-            sound(&found, file);
+        if let Some(found) = check_result(parse(file, PATH, &robot, &options), file) {
+            assert_sound(&found, file);
         }
-        if let Some(found) = understood(parse_joints(file, PATH, &robot, &options), file) {
+        if let Some(found) = check_result(parse_joints(file, PATH, &robot, &options), file) {
             joints_sound(&found, &robot);
         }
     }

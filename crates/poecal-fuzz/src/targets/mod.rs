@@ -21,7 +21,7 @@ pub use models::{foreign, robot_toml, urdf};
 pub use pictures::{boards, cameras, messages};
 pub use pipeline::pipeline;
 pub use programs::programs;
-pub use recorded::recorded;
+pub use recorded::read_recorded;
 pub use residuals::residuals;
 pub use settings::settings;
 pub use tables::{joints, measurements};

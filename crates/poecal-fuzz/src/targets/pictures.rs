@@ -8,7 +8,7 @@ use poecal_model::camera::{Board, Camera, Lens};
 use poecal_model::simulate::elbow;
 
 use crate::one_file::with_file;
-use crate::properties::{PATH, certain, one_line, text, understood};
+use crate::properties::{PATH, certain, check_result, one_line, text};
 
 /// The path of an input whose first line is the ending of its name, and its text.
 fn file<'a>(text: &'a str, endings: &[&str]) -> Option<(String, &'a str)> {
@@ -21,7 +21,7 @@ pub fn cameras(data: &[u8]) -> bool {
     let Some(whole) = text(data) else { return false };
     let Some((path, text)) = file(&whole, &["yaml", "json", "xml", "dat", "csv"]) else { return false };
     let read = || with_file(&path, text, || read_cameras(&path).map(|it| it.cameras));
-    let Some(cameras) = understood(read(), text) else { return false };
+    let Some(cameras) = check_result(read(), text) else { return false };
     let again = certain(read(), "a second time");
     assert_eq!(format!("{cameras:?}"), format!("{again:?}"));
     let names: BTreeSet<&str> = cameras.iter().map(|it| it.name.as_str()).collect();
@@ -47,7 +47,9 @@ fn maps(lens: &Lens) {
 pub fn boards(data: &[u8]) -> bool {
     let Some(whole) = text(data) else { return false };
     let Some((path, text)) = file(&whole, &["yaml", "xml", "csv"]) else { return false };
-    let Some(boards) = understood(with_file(&path, text, || read_boards(&path)), text) else { return false };
+    let Some(boards) = check_result(with_file(&path, text, || read_boards(&path)), text) else {
+        return false;
+    };
     assert!(!boards.is_empty());
     boards.iter().for_each(are_points);
     if let Some(stated) = certain(with_file(&path, text, || board_of_file(&path)), "its words") {
@@ -76,8 +78,8 @@ pub fn messages(data: &[u8]) -> bool {
     let path = format!("{PATH}.yaml");
     let robot = elbow();
     let read = || parse(&text, &path, &robot, &options);
-    let Some(file) = understood(read(), &text) else { return false };
-    sound(&file, &text);
+    let Some(file) = check_result(read(), &text) else { return false };
+    assert_sound(&file, &text);
     assert_eq!(file.data.all_readings(), certain(read(), "a second time").data.all_readings());
     file.data.pictures.cameras.iter().for_each(|it| maps(&it.lens));
     file.data.pictures.boards.iter().for_each(are_points);
@@ -85,7 +87,7 @@ pub fn messages(data: &[u8]) -> bool {
 }
 
 /// Asserts that the data are consistent and belong to the text: each row is a picture.
-fn sound(file: &MeasurementFile, text: &str) {
+fn assert_sound(file: &MeasurementFile, text: &str) {
     certain(file.data.check(), "data");
     file.warnings.iter().for_each(|warning| one_line(warning));
     assert!(!file.data.is_empty() && file.data.pictures.all.len() == file.data.len());

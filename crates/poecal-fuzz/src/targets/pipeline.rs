@@ -10,10 +10,10 @@ use poecal_results::model::{Model, ModelSource};
 use poecal_results::predictions::{PredictionFrame, predict};
 use poecal_results::residuals::Residuals;
 
-use super::calibration::{page, same};
-use super::models::{converted, patched};
-use super::tables::{joints_sound, sound};
-use crate::properties::{PATH, VAST_M, certain, one_line, parts, size_m, understood};
+use super::calibration::{assert_round_trip, page};
+use super::models::{assert_patched, convert_both_forms};
+use super::tables::{assert_sound, joints_sound};
+use crate::properties::{PATH, VAST_M, certain, check_result, one_line, parts, size_m};
 
 /// Limits of a calibrated input, so that it takes little time.
 const MOST_JOINTS: usize = 8;
@@ -24,21 +24,21 @@ const MOST_TARGETS: usize = 4;
 pub fn pipeline(data: &[u8]) -> bool {
     let Some([model, table, map]) = parts(data) else { return false };
     let selection = ChainSelection::default();
-    let Some(model) = understood(Model::parse(&model, PATH, &selection), &model) else { return false };
+    let Some(model) = check_result(Model::parse(&model, PATH, &selection), &model) else { return false };
     let mapping = if map.is_empty() {
         None
     } else {
-        let Some(mapping) = understood(ColumnMap::parse(&map, PATH), &map) else { return false };
+        let Some(mapping) = check_result(ColumnMap::parse(&map, PATH), &map) else { return false };
         Some(mapping)
     };
     let options = ReadOptions { mapping, ..ReadOptions::default() };
-    let Some(file) = understood(parse(&table, PATH, &model.robot, &options), &table) else { return false };
-    sound(&file, &table);
+    let Some(file) = check_result(parse(&table, PATH, &model.robot, &options), &table) else { return false };
+    assert_sound(&file, &table);
     let sizes = (model.robot.joints.len(), file.data.len(), file.data.targets.len());
     if sizes.0 > MOST_JOINTS || sizes.1 > MOST_ROWS || sizes.2 > MOST_TARGETS {
         return true;
     }
-    checked(&model, &file);
+    check_diagnosis(&model, &file);
     let calibrated =
         calibrate(&model.robot, &file.data, &CalibrationOptions { restarts: 2, ..Default::default() });
     let calibration = match calibrated {
@@ -49,16 +49,16 @@ pub fn pipeline(data: &[u8]) -> bool {
         }
     };
     let results = results(&model, &file, &calibration);
-    if let Some(joints) = understood(parse_joints(&table, PATH, &model.robot, &options), &table) {
+    if let Some(joints) = check_result(parse_joints(&table, PATH, &model.robot, &options), &table) {
         joints_sound(&joints, &model.robot);
         for (frame, doubts) in [(PredictionFrame::Base, true), (PredictionFrame::Device, false)] {
-            understood(predict(&results, &joints, frame, None, doubts), "");
+            check_result(predict(&results, &joints, frame, None, doubts), "");
         }
     }
     true
 }
 
-fn checked(model: &Model, file: &MeasurementFile) {
+fn check_diagnosis(model: &Model, file: &MeasurementFile) {
     let found = diagnose(&model.robot, &file.data, &file.data.all_rows(), &DiagnosisOptions::default());
     found.iter().for_each(|diagnosis| one_line(&diagnosis.statement));
     let check = report::Check::new(model, Some(file), &found);
@@ -75,7 +75,7 @@ fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> 
     for detail in [report::Detail::Short, report::Detail::Full] {
         assert!(!report::summary(&file, detail).is_empty());
     }
-    same(&file);
+    assert_round_trip(&file);
     let residuals = Residuals::from_calibration(&read.data, calibration);
     let text = residuals.text();
     assert_eq!(certain(Residuals::parse(&text, PATH), &text).text(), text);
@@ -84,9 +84,9 @@ fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> 
     if let ModelSource::Urdf(document) = &model.source
         && size_m(&robot) < VAST_M
     {
-        patched(document, &robot);
+        assert_patched(document, &robot);
     }
     let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: PATH.into() };
-    converted(&model);
+    convert_both_forms(&model);
     model
 }

@@ -6,7 +6,7 @@ use poecal_model::robot::{JointTerm, Term};
 use poecal_model::simulate::elbow;
 
 use crate::LONGEST;
-use crate::properties::{one_line, understood};
+use crate::properties::{check_result, one_line};
 
 /// True for characters of numbers: all others of a program stay.
 fn is_of_number(byte: u8) -> bool {
@@ -37,7 +37,7 @@ pub fn programs(data: &[u8]) -> bool {
     options.given.frames.push((None, Pose::identity()));
     options.given.frames.push((Some("1".to_owned()), Pose::from_translation([0.1, 0.0, 0.0].into())));
     let words = String::from_utf8_lossy(text);
-    let made = || understood(compensate_program(text, (&nominal, &actual), &[], &options), &words);
+    let made = || check_result(compensate_program(text, (&nominal, &actual), &[], &options), &words);
     let Some((out, summary)) = made() else { return false };
     assert_eq!(made().map(|it| it.0), Some(out.clone()));
     let bare = |text: &[u8]| text.iter().copied().filter(|byte| !is_of_number(*byte)).collect::<Vec<u8>>();

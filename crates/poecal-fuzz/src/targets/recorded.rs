@@ -12,7 +12,7 @@ pub(crate) const NAMES: [&str; 2] = ["input.1", "input.2"];
 
 /// A file in any form, or two of which one has the joint readings of the other, including bytes of workbooks and bags: read as they are, joined row
 /// by row. The data are the same each time, and as a table of the project's form.
-pub fn recorded(data: &[u8]) -> bool {
+pub fn read_recorded(data: &[u8]) -> bool {
     if data.len() > LONGEST {
         return false;
     }
@@ -45,7 +45,7 @@ pub(crate) fn read_files(files: &[(&str, &[u8])]) -> bool {
             return false;
         }
     };
-    sound(&file);
+    assert_sound(&file);
     let again = whole();
     let is_same = |again: &MeasurementFile| {
         again.data == file.data
@@ -64,7 +64,7 @@ pub(crate) fn read_files(files: &[(&str, &[u8])]) -> bool {
 }
 
 /// Asserts that the data are consistent.
-fn sound(file: &MeasurementFile) {
+fn assert_sound(file: &MeasurementFile) {
     let checked = file.data.check();
     assert!(checked.is_ok(), "{checked:?}");
     assert!(!file.data.is_empty());

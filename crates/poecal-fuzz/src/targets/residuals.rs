@@ -2,18 +2,18 @@
 
 use poecal_results::residuals::Residuals;
 
-use crate::properties::{PATH, certain, text, understood};
+use crate::properties::{PATH, certain, check_result, text};
 
 /// Residuals: read, written, read again.
 pub fn residuals(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
-    let Some(residuals) = understood(Residuals::parse(&text, PATH), &text) else { return false };
-    same(&residuals);
+    let Some(residuals) = check_result(Residuals::parse(&text, PATH), &text) else { return false };
+    assert_round_trip(&residuals);
     true
 }
 
 /// Asserts that written text reads back the same.
-pub(crate) fn same(residuals: &Residuals) {
+pub(crate) fn assert_round_trip(residuals: &Residuals) {
     let written = residuals.text();
     let again = certain(Residuals::parse(&written, PATH), &written);
     assert_eq!(again.text(), written);

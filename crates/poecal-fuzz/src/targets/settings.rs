@@ -2,7 +2,7 @@
 
 use poecal_results::settings::{SettingValue, Settings};
 
-use crate::properties::{PATH, certain, text, understood};
+use crate::properties::{PATH, certain, check_result, text};
 
 /// Possible keys of settings: those of the examples, and some of each kind.
 const KEYS: [&str; 14] = [
@@ -25,7 +25,7 @@ const KEYS: [&str; 14] = [
 /// Settings: read, written as texts, read again.
 pub fn settings(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
-    let Some(settings) = understood(Settings::parse(&text, PATH, &KEYS), &text) else { return false };
+    let Some(settings) = check_result(Settings::parse(&text, PATH, &KEYS), &text) else { return false };
     let mut written = "poecal_settings = 1\n".to_owned();
     for entry in &settings.entries {
         written.push_str(&format!("{} = {}\n", entry.key, value(&entry.value)));

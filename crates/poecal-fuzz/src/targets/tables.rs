@@ -6,7 +6,7 @@ use poecal_model::simulate::{elbow, scara};
 use poecal_results::model::{Model, ModelSource};
 use poecal_results::predictions::{PredictionFrame, predict};
 
-use crate::properties::{PATH, certain, one_line, parts, text, understood};
+use crate::properties::{PATH, certain, check_result, one_line, parts, text};
 
 /// A robot with the joints of a table.
 pub(crate) fn robot_of(table: &str) -> Robot {
@@ -19,13 +19,13 @@ pub fn measurements(data: &[u8]) -> bool {
     let mapping = if map.is_empty() {
         None
     } else {
-        let Some(mapping) = understood(ColumnMap::parse(&map, PATH), &map) else { return false };
+        let Some(mapping) = check_result(ColumnMap::parse(&map, PATH), &map) else { return false };
         Some(mapping)
     };
     let robot = robot_of(&table);
     let options = ReadOptions { mapping, ..ReadOptions::default() };
-    let Some(file) = understood(parse(&table, PATH, &robot, &options), &table) else { return false };
-    sound(&file, &table);
+    let Some(file) = check_result(parse(&table, PATH, &robot, &options), &table) else { return false };
+    assert_sound(&file, &table);
     // The set of a line does not affect its content.
     let all = ReadOptions { ignore_sets: true, ..options };
     let again = certain(parse(&table, PATH, &robot, &all), "without sets");
@@ -34,7 +34,7 @@ pub fn measurements(data: &[u8]) -> bool {
 }
 
 /// Asserts that the data are consistent and belong to the text.
-pub(crate) fn sound(file: &MeasurementFile, text: &str) {
+pub(crate) fn assert_sound(file: &MeasurementFile, text: &str) {
     certain(file.data.check(), "data");
     file.warnings.iter().for_each(|warning| one_line(warning));
     assert!(!file.data.is_empty() && file.understood.len() == 1);
@@ -53,7 +53,7 @@ pub(crate) fn sound(file: &MeasurementFile, text: &str) {
 pub fn joints(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let robot = robot_of(&text);
-    let Some(table) = understood(parse_joints(&text, PATH, &robot, &ReadOptions::default()), &text) else {
+    let Some(table) = check_result(parse_joints(&text, PATH, &robot, &ReadOptions::default()), &text) else {
         return false;
     };
     joints_sound(&table, &robot);

@@ -1,10 +1,10 @@
 //! Columns, words and units that a person chooses in place of the guess.
 
-use super::Sample;
+use super::TableSample;
 use super::fields::{MappedField, WAYS};
 use poecal_numerics::error::{ErrorKind, Result, nearest_or_all};
 
-impl Sample<'_> {
+impl TableSample<'_> {
     /// Takes a column or a word in place of the guess.
     pub(super) fn choose(&self, fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
         if key == "pose" {
@@ -19,7 +19,7 @@ impl Sample<'_> {
                 ))
             };
         }
-        let chosen = if value.is_empty() { String::new() } else { self.known(value, key)? };
+        let chosen = if value.is_empty() { String::new() } else { self.known_column(value, key)? };
         let keys: Vec<&str> = fields.iter().map(|it| it.key.as_str()).collect();
         let Some(at) = keys.iter().position(|it| *it == key) else {
             let hint = nearest_or_all(key, &keys);
@@ -33,9 +33,9 @@ impl Sample<'_> {
     }
 
     /// Finds a column of the file by its name, with or without its unit.
-    fn known(&self, name: &str, key: &str) -> Result<String> {
+    fn known_column(&self, name: &str, key: &str) -> Result<String> {
         let known: Vec<&str> = self.columns.iter().map(|it| it.name.as_str()).collect();
-        let found = self.index(name).or_else(|| self.names.named(name)).and_then(|it| self.name(it));
+        let found = self.index(name).or_else(|| self.names.find_exact(name)).and_then(|it| self.name(it));
         found.ok_or_else(|| {
             ErrorKind::Option.error(format!(
                 "--column: found no column `{name}` for `{key}`, expected one of the file, {}",

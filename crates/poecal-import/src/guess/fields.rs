@@ -91,7 +91,7 @@ impl MappedField {
 
     /// The field for the form of an orientation.
     pub(crate) fn form(form: Option<OrientationForm>) -> Self {
-        let chosen = form.map(OrientationForm::mapped);
+        let chosen = form.map(OrientationForm::mapping_text);
         let choices = forms();
         MappedField { choices, ..MappedField::column("orientation", "orientation", "form", chosen) }
     }
@@ -105,7 +105,7 @@ impl MappedField {
     }
 
     /// The column that is chosen.
-    pub(crate) fn used(&self) -> Option<&String> {
+    pub(crate) fn chosen_column(&self) -> Option<&String> {
         Some(&self.chosen).filter(|it| self.choices.is_empty() && !it.is_empty())
     }
 }
@@ -119,7 +119,7 @@ fn forms() -> Vec<MappedChoice> {
         let own = MAKERS.iter().filter(|it| OrientationForm::Angles(it.angles) == form);
         let makers: Vec<String> = own.map(|it| format!("{} {}", it.maker, it.names.join(", "))).collect();
         let before = if makers.is_empty() { "" } else { ": " };
-        MappedChoice::new(&form.mapped(), format!("{form}{before}{}", makers.join("; ")))
+        MappedChoice::new(&form.mapping_text(), format!("{form}{before}{}", makers.join("; ")))
     };
     let none = MappedChoice::new("", "none: positions alone");
     std::iter::once(none).chain(OrientationForm::with_names().chain(angles).map(choice)).collect()
@@ -130,7 +130,7 @@ pub(super) fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) ->
     let unit = UNITS.iter().find(|it| it.key == key);
     let of = unit.map_or(Unit::Radian, |it| it.of);
     let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, of));
-    let stated = stated.transpose().map_err(refused)?;
+    let stated = stated.transpose().map_err(choice_error)?;
     if unit.is_none() {
         return ErrorKind::Option.refuse(format!(
             "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
@@ -143,6 +143,6 @@ pub(super) fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) ->
 }
 
 /// The error of a value that was chosen.
-pub(super) fn refused(error: poecal_numerics::error::Error) -> poecal_numerics::error::Error {
+pub(super) fn choice_error(error: poecal_numerics::error::Error) -> poecal_numerics::error::Error {
     ErrorKind::Option.error(format!("--column: {}", error.message()))
 }

@@ -9,16 +9,16 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use self::fields::{MOST_RADIANS, UNITS, UnitField, choose_unit, refused};
+use self::fields::{MOST_RADIANS, UNITS, UnitField, choice_error, choose_unit};
 pub use self::fields::{MappedChoice, MappedField};
-use self::names::Names;
+use self::names::HeaderNames;
 use super::ReadOptions;
-use super::table::Table;
-use crate::instruments::{MEASURED, Opened, Opening, WORKBOOK, headerless};
+use super::table::FileTable;
+use crate::instruments::{MEASURED, OpenedFile, OpeningContext, WORKBOOK, headerless};
 use crate::table::column_names::numbered_column;
 use crate::table::header::Header;
 use crate::table::mapping::{ColumnMap, PositionSpec};
-use crate::table::number::Numbers;
+use crate::table::number::NumberReader;
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::Angles;
 use poecal_model::robot::{ReadingKind, Robot};
@@ -55,9 +55,9 @@ pub struct FoundColumn {
 }
 
 /// A table's first rows.
-struct Sample<'h> {
+struct TableSample<'h> {
     header: &'h Header<'h>,
-    names: Names<'h>,
+    names: HeaderNames<'h>,
     columns: Vec<FoundColumn>,
     /// The largest number of each column.
     largest: Vec<f64>,
@@ -80,7 +80,7 @@ pub fn guess_columns(
 /// Compiled once, and not for each kind of path.
 fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<ColumnGuess> {
     let plain = ReadOptions::default();
-    if let Opened::Made(made) = (Opening { robot, options: &plain }).opened(path, MEASURED)?
+    if let OpenedFile::Made(made) = (OpeningContext { robot, options: &plain }).open_file(path, MEASURED)?
         && made.title != WORKBOOK
         && made.title != headerless::FORM.title
     {
@@ -94,20 +94,20 @@ fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<C
     let position = Some(PositionSpec { columns: Some([1, 2, 3].map(numbered_column)), unit: None });
     let mapping = Some(ColumnMap { position, ..ColumnMap::default() });
     let options = ReadOptions { mapping, ..ReadOptions::default() };
-    let blocks = Opening { robot, options: &options }.blocks(path, MEASURED)?;
-    let mut table = Table::open(path, blocks, &ColumnMap::default())?;
+    let blocks = OpeningContext { robot, options: &options }.blocks(path, MEASURED)?;
+    let mut table = FileTable::open(path, blocks, &ColumnMap::default())?;
     let (cells, largest) = first_rows(&mut table)?;
-    let sample = Sample::new(&table.header, cells, largest);
+    let sample = TableSample::new(&table.header, cells, largest);
     let fields = sample.fields(robot, chosen)?;
     let way = chosen.iter().rfind(|it| it.0 == "pose").map(|it| it.1.as_str());
     Ok(sample.guess(fields, way, path))
 }
 
 /// The first cells of each column, and its largest number; NaN if it has none.
-fn first_rows(table: &mut Table<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
+fn first_rows(table: &mut FileTable<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
     let count = table.header.cells.len();
     let (mut shown, mut largest) = (vec![Vec::new(); count], vec![f64::NAN; count]);
-    let mut numbers = Numbers::new(None);
+    let mut numbers = NumberReader::new(None);
     let mut read = 0;
     while read < ROWS
         && let Some(mut rows) = table.next_block()?
@@ -131,16 +131,16 @@ fn first_rows(table: &mut Table<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
     Ok((shown, largest))
 }
 
-impl<'h> Sample<'h> {
+impl<'h> TableSample<'h> {
     fn new(header: &'h Header<'h>, cells: Vec<Vec<String>>, largest: Vec<f64>) -> Self {
         let name = |(at, cell): (usize, &crate::table::header_cells::HeaderCell)| {
-            let is_own = !cell.text.is_empty() && header.second(&cell.text).is_none();
+            let is_own = !cell.text.is_empty() && header.second_index(&cell.text).is_none();
             if is_own { cell.text.clone() } else { numbered_column(at + 1) }
         };
         let names = header.cells.iter().enumerate().map(name);
         let columns = names.zip(cells).map(|(name, cells)| FoundColumn { name, cells }).collect();
         let numeric = largest.iter().map(|it| !it.is_nan()).collect();
-        Sample { header, names: Names::new(header, numeric), columns, largest }
+        TableSample { header, names: HeaderNames::new(header, numeric), columns, largest }
     }
 
     fn name(&self, column: usize) -> Option<String> {
@@ -177,7 +177,7 @@ impl<'h> Sample<'h> {
         fields.push(MappedField::unit("position", "unit.position", "unit"));
         fields.extend(self.orientation(near.as_deref(), chosen)?);
         for (key, label) in [("target", "name of the target"), ("id", "name of the row")] {
-            let column = self.names.named(key).and_then(|it| self.name(it));
+            let column = self.names.find_exact(key).and_then(|it| self.name(it));
             fields.push(MappedField::column("rows", key, label, column));
         }
         let (units, others): (Vec<_>, Vec<_>) = chosen.iter().partition(|it| it.0.starts_with("unit."));
@@ -202,7 +202,7 @@ impl<'h> Sample<'h> {
         });
         for (_, word) in chosen.iter().filter(|it| it.0 == "orientation") {
             let form: Option<OrientationForm> =
-                if word.is_empty() { None } else { Some(word.parse().map_err(refused)?) };
+                if word.is_empty() { None } else { Some(word.parse().map_err(choice_error)?) };
             found = form.map(|form| match found {
                 // Angles in another order are in the same columns.
                 Some((known, parts)) if known.len() == 3 && form.len() == 3 => (form, parts),
@@ -232,7 +232,10 @@ impl<'h> Sample<'h> {
     /// Units of columns that state none.
     fn guess_units(&self, fields: &mut [MappedField]) {
         for unit in UNITS {
-            let own = fields.iter().filter(|it| it.unit == unit.key).filter_map(|it| self.index(it.used()?));
+            let own = fields
+                .iter()
+                .filter(|it| it.unit == unit.key)
+                .filter_map(|it| self.index(it.chosen_column()?));
             let chosen = self.guess_unit(&own.collect::<Vec<_>>(), &unit);
             let field = fields.iter_mut().find(|it| it.key == unit.key);
             field.into_iter().for_each(|it| it.chosen = chosen.map_or("", NamedUnit::symbol).to_owned());
@@ -265,15 +268,15 @@ impl<'h> Sample<'h> {
             names.extend(OrientationForm::BY_NAME.iter().flat_map(|it| it.part_names()));
         }
         names.extend(["target", "id"].into_iter().filter(|it| !is_chosen(it)));
-        let columns = names.into_iter().filter_map(|it| self.name(self.names.named(it)?));
-        columns.filter(|it| !fields.iter().any(|field| field.used() == Some(it))).collect()
+        let columns = names.into_iter().filter_map(|it| self.name(self.names.find_exact(it)?));
+        columns.filter(|it| !fields.iter().any(|field| field.chosen_column() == Some(it))).collect()
     }
 
     fn guess(self, fields: Vec<MappedField>, way: Option<&str>, path: &Path) -> ColumnGuess {
         let is_missing = |it: &&MappedField| it.required && it.chosen.is_empty();
         let missing = fields.iter().filter(is_missing).map(|it| it.label.clone()).collect();
         let names = self.columns.iter().map(|it| &it.name);
-        let is_ignored = |name: &&String| !fields.iter().any(|it| it.used() == Some(*name));
+        let is_ignored = |name: &&String| !fields.iter().any(|it| it.chosen_column() == Some(*name));
         let ignored = names.filter(is_ignored).cloned().collect();
         let file = path.file_name().map_or_else(String::new, |it| it.to_string_lossy().into_owned());
         let mapping = text::mapping(&fields, way, &self.left_out(&fields), &file);

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::words::quoted;
-use crate::join::join_words::numbered;
+use super::words::quote_names;
+use crate::join::join_words::number_lines;
 use poecal_fit::start::RenamedMarkers;
 
 /// Notes and warnings on renamed markers. `lines` are those of the frames.
@@ -32,11 +32,11 @@ pub(crate) fn words(
         }
     }
     let at = |lines: &[String]| match lines.len() {
-        1 => format!("one frame ({})", numbered(lines)),
-        count => format!("{count} frames ({})", numbered(lines)),
+        1 => format!("one frame ({})", number_lines(lines)),
+        count => format!("{count} frames ({})", number_lines(lines)),
     };
     let exchanges = exchanged.iter().map(|(markers, lines)| {
-            let (names, at) = (quoted(markers.iter().map(name)), at(lines));
+            let (names, at) = (quote_names(markers.iter().map(name)), at(lines));
             format!("exchanged the names of {names} in {at}, where their distances to the other markers are those of each other: check the labels there")
         });
     let mut warned: Vec<String> = exchanges.collect();

@@ -1,7 +1,7 @@
 //! Files of instruments, controllers, recorders and spreadsheets, as tables in our form. They are recognised by their content, never by their
 //! names.
 //!
-//! Each form in [`FORMS`] has a module. It makes a `Made` (`maker.rs`): columns, and rows of typed cells with the line of each row. This becomes a
+//! Each form in [`FORMS`] has a module. It makes a `MadeTable` (`maker.rs`): columns, and rows of typed cells with the line of each row. This becomes a
 //! text in our form, and is read as any other. So one reader handles units, beam breaks, scales and errors. A file that holds joint readings and
 //! measurements at once (`recording.rs`) is two entries of the plan of files. `marker_words.rs` reports the markers that their distances
 //! distinguish.
@@ -15,7 +15,7 @@ mod controller_lists;
 mod figaroh;
 pub(crate) mod headerless;
 mod leica;
-mod maker;
+mod made_table;
 mod marker_words;
 mod motive;
 mod ndi;
@@ -23,10 +23,10 @@ mod programs;
 mod qualisys;
 mod recording;
 mod refusal;
-mod refused;
 mod robodk;
 mod spatial_analyzer;
 mod two_sets;
+mod unsupported_forms;
 mod vicon;
 mod words;
 #[cfg(feature = "workbooks")]
@@ -38,17 +38,17 @@ mod workbook_cells;
 use std::io::Read as _;
 use std::path::Path;
 
-use self::maker::Refused;
-pub(crate) use self::maker::{Called, Column, Made, Value};
+use self::made_table::Refusal;
+pub(crate) use self::made_table::{CellValue, CoordinateName, MadeTable, TableColumn};
 pub(crate) use self::recording::Recording;
 use super::ReadOptions;
 use crate::table::configurations;
-use crate::table::text::Blocks;
+use crate::table::text::LineBlocks;
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 #[cfg(feature = "workbooks")]
-use poecal_storage::hashes::Hashing;
-use poecal_storage::limits::Limit;
+use poecal_storage::hashes::HashingReader;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source;
 #[cfg(feature = "workbooks")]
 use poecal_storage::source::Input;
@@ -64,42 +64,42 @@ pub(crate) const RECORDINGS: [&str; 4] =
 
 /// Settings with which files are opened.
 #[derive(Clone, Copy)]
-pub(crate) struct Opening<'a> {
+pub(crate) struct OpeningContext<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) options: &'a ReadOptions,
 }
 
 /// A file that is open.
-pub(crate) enum Opened<'p> {
+pub(crate) enum OpenedFile<'p> {
     /// A file in our form.
-    Own(Box<Blocks<'p>>),
+    Own(Box<LineBlocks<'p>>),
     /// The table of a file in another form.
-    Made(Box<Made>),
+    Made(Box<MadeTable>),
 }
 
-impl<'p> Opened<'p> {
+impl<'p> OpenedFile<'p> {
     /// Its blocks.
-    pub(crate) fn blocks(self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+    pub(crate) fn blocks(self, path: &'p Path, expected: &'p str) -> LineBlocks<'p> {
         match self {
-            Opened::Own(blocks) => *blocks,
-            Opened::Made(table) => table.blocks(path, expected),
+            OpenedFile::Own(blocks) => *blocks,
+            OpenedFile::Made(table) => table.blocks(path, expected),
         }
     }
 }
 
 /// A form of files.
 #[derive(Clone, Copy)]
-pub(crate) struct Form {
+pub(crate) struct FileForm {
     /// Title of the files of this form, as in "points of SpatialAnalyzer".
     pub(crate) title: &'static str,
     /// Reports whether a text is of this form, by its beginning.
-    is_it: fn(&str, &Opening<'_>) -> bool,
+    is_it: fn(&str, &OpeningContext<'_>) -> bool,
     /// The table of a text.
-    table: fn(&str, &Opening<'_>) -> std::result::Result<Made, Refused>,
+    table: fn(&str, &OpeningContext<'_>) -> std::result::Result<MadeTable, Refusal>,
 }
 
 /// All forms of texts; the last one is the fallback.
-const FORMS: &[Form] = &[
+const FORMS: &[FileForm] = &[
     spatial_analyzer::FORM,
     motive::FORM,
     qualisys::FORM,
@@ -119,7 +119,7 @@ const FORMS: &[Form] = &[
 ];
 
 /// Forms of joint readings alone.
-const LISTS: &[Form] = &[
+const LISTS: &[FileForm] = &[
     programs::FORM,
     controller_lists::FANUC,
     controller_lists::STAUBLI,
@@ -129,7 +129,7 @@ const LISTS: &[Form] = &[
 ];
 
 /// Forms among them whose axes have names that a mapping may assign to joints.
-const NUMBERED: &[Form] =
+const NUMBERED: &[FileForm] =
     &[controller_lists::FANUC, controller_lists::STAUBLI, controller_lists::KUKA, headerless::FORM];
 
 /// Largest number of separators in a line per column of a table: a file that is no table, such as a program, may have more.
@@ -137,23 +137,23 @@ const WIDE: usize = 16;
 
 /// Refuses a text with a line of far too many cells, before forms are sought in it.
 fn refuse_wide(text: &str, path: &Path) -> Result<()> {
-    let most = Limit::Columns.most_held();
+    let most = ResourceLimit::Columns.most_held();
     for (line, number) in text.lines().zip(1..) {
         let count = line.bytes().filter(|it| matches!(it, b',' | b';' | b'\t')).count() + 1;
         if count > WIDE.saturating_mul(most) {
-            let message = Limit::Columns.sentence(&format!("{count} columns"));
+            let message = ResourceLimit::Columns.sentence(&format!("{count} columns"));
             return Err(ErrorKind::Syntax.error(message).at_line(path, number));
         }
     }
     Ok(())
 }
 
-impl Opening<'_> {
+impl OpeningContext<'_> {
     /// Columns of the joints in the robot's order: rotary joints in this unit, and slides in metres or millimetres.
-    fn joint_columns(&self, angle: &str) -> impl Iterator<Item = Column> {
+    fn joint_columns(&self, angle: &str) -> impl Iterator<Item = TableColumn> {
         let length = if angle == "rad" { "m" } else { "mm" };
         let names = self.robot.joint_reading_names().into_iter().zip(self.slides());
-        names.map(move |(name, slides)| Column::from(name).in_unit(if slides { length } else { angle }))
+        names.map(move |(name, slides)| TableColumn::from(name).in_unit(if slides { length } else { angle }))
     }
 
     /// True for each joint reading that is a length.
@@ -177,7 +177,7 @@ impl Opening<'_> {
     }
 
     /// The blocks of joint readings alone.
-    pub(crate) fn joint_blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Blocks<'p>> {
+    pub(crate) fn joint_blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Result<LineBlocks<'p>> {
         match self.recording(path)? {
             Some(found) => match &found.joints {
                 Ok(table) => Ok(table.blocks(path, expected)),
@@ -188,59 +188,61 @@ impl Opening<'_> {
     }
 
     /// The blocks of a file in our form, or of the table that a file in another one makes.
-    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Blocks<'p>> {
-        Ok(self.opened(path, expected)?.blocks(path, expected))
+    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Result<LineBlocks<'p>> {
+        Ok(self.open_file(path, expected)?.blocks(path, expected))
     }
 
     /// The file in our form, or the table of one in another form, not yet read.
-    pub(crate) fn opened<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Opened<'p>> {
+    pub(crate) fn open_file<'p>(&self, path: &'p Path, expected: &'p str) -> Result<OpenedFile<'p>> {
         if configurations::is_folder(path) {
-            return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
+            return LineBlocks::open_or_join(path, expected).map(|it| OpenedFile::Own(Box::new(it)));
         }
-        let (input, head) = source::open_any(path, expected, Limit::Table)?;
+        let (input, head) = source::open_any(path, expected, ResourceLimit::Table)?;
         source::refuse_named(path, expected)?;
         #[cfg(feature = "workbooks")]
         if workbook::is_one(&head) {
             return self.workbook(path, expected, input);
         }
         source::refuse_other_forms(path, expected, &head)?;
-        self.of_text(path, Blocks::of_input(path, expected, input))
+        self.of_text(path, LineBlocks::of_input(path, expected, input))
     }
 
     /// The table of a workbook.
     #[cfg(feature = "workbooks")]
-    fn workbook<'p>(&self, path: &'p Path, expected: &'p str, input: Input) -> Result<Opened<'p>> {
+    fn workbook<'p>(&self, path: &'p Path, expected: &'p str, input: Input) -> Result<OpenedFile<'p>> {
         let mut bytes = Vec::new();
-        let mut input = Hashing::new(input);
-        let read = input.by_ref().take(Limit::Workbook.most() + 1).read_to_end(&mut bytes);
-        read.map_err(|error| source::unreadable(path, &error, expected))?;
-        if bytes.len() as u64 > Limit::Workbook.most() {
-            return Err(ErrorKind::File.error(Limit::Workbook.exceeded("a workbook")).in_file(path));
+        let mut input = HashingReader::new(input);
+        let read = input.by_ref().take(ResourceLimit::Workbook.value() + 1).read_to_end(&mut bytes);
+        read.map_err(|error| source::unreadable_error(path, &error, expected))?;
+        if bytes.len() as u64 > ResourceLimit::Workbook.value() {
+            return Err(ErrorKind::File
+                .error(ResourceLimit::Workbook.exceeded_error("a workbook"))
+                .in_file(path));
         }
         let made = workbook::table(&bytes, self).map_err(|it| it.error(path))?;
-        Ok(Opened::Made(Box::new(made.of_file(WORKBOOK, Some(input.sha256())))))
+        Ok(OpenedFile::Made(Box::new(made.of_file(WORKBOOK, Some(input.sha256())))))
     }
 
     /// A text in our form as it is, or the table that it makes.
-    pub(crate) fn of_text<'p>(&self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<Opened<'p>> {
+    pub(crate) fn of_text<'p>(&self, path: &'p Path, mut blocks: LineBlocks<'p>) -> Result<OpenedFile<'p>> {
         blocks.begin()?;
         refuse_wide(blocks.text(), path)?;
-        if let Some(message) = refused::found(blocks.text()) {
+        if let Some(message) = unsupported_forms::find_refusal(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
         // A mapping that names columns reads tables as they are; if it names no joints, lists of joints are read as without it.
-        let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
+        let forms: &[FileForm] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
             None => FORMS,
             Some(map) if map.names_joints() => NUMBERED,
             Some(_) => LISTS,
         };
         let mut forms = forms.iter();
         let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else {
-            return Ok(Opened::Own(Box::new(blocks)));
+            return Ok(OpenedFile::Own(Box::new(blocks)));
         };
         let text = blocks.rest()?;
         let mut made = (form.table)(&text, self).map_err(|it| it.error(path))?;
-        made.said.splice(0..0, blocks.said().notes);
-        Ok(Opened::Made(Box::new(made.of_file(form.title, blocks.sha256()))))
+        made.said.splice(0..0, blocks.take_remarks().notes);
+        Ok(OpenedFile::Made(Box::new(made.of_file(form.title, blocks.sha256()))))
     }
 }

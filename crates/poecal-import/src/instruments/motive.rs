@@ -1,11 +1,11 @@
 //! Takes that Motive (OptiTrack) exported as CSV, versions 1.2 to 1.25: by the labels of their head, never by counting lines.
 
-use super::bodies::{Body, Frames, cells};
-use super::maker::{At, Made, Refused};
+use super::bodies::{RecordedBody, RecordedFrames, cells};
+use super::made_table::{FileLine, MadeTable, Refusal};
 use super::words::{lines, number};
-use super::{Form, Opening};
+use super::{FileForm, OpeningContext};
 
-pub(crate) const FORM: Form = Form { title: "a take of Motive", is_it, table };
+pub(crate) const FORM: FileForm = FileForm { title: "a take of Motive", is_it, table };
 
 /// Units of positions, with their symbols and sizes in metres.
 const UNITS: [(&str, (&str, f64)); 3] =
@@ -14,7 +14,7 @@ const UNITS: [(&str, (&str, f64)); 3] =
 /// Beginning of the names of markers without a label.
 const UNNAMED: &str = "Unlabeled";
 
-fn is_it(text: &str, _: &Opening<'_>) -> bool {
+fn is_it(text: &str, _: &OpeningContext<'_>) -> bool {
     lines(text).next().is_some_and(|(_, line)| {
         let line = line.trim_start_matches('"');
         line.starts_with("Format Version") && line.contains("Frame Rate")
@@ -31,11 +31,11 @@ struct Labels<'t> {
     line: usize,
 }
 
-fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let (_, head) = lines(text).next().ok_or("found no line")?;
     if let Some(other) = [';', '\t'].into_iter().find(|it| !head.contains(',') && head.contains(*it)) {
         let what = if other == ';' { "`;`" } else { "tabs" };
-        return At(1).refuse(format!(
+        return FileLine(1).refuse(format!(
             "found {what} between the cells of a take of Motive, expected commas, which Motive writes: export the take again"
         ));
     }
@@ -45,10 +45,10 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         head.get(at + 1).copied()
     };
     let Some(stated) = value("Length Units") else {
-        return At(1).refuse("found no `Length Units` in the head of a take of Motive, expected Meters, Centimeters or Millimeters");
+        return FileLine(1).refuse("found no `Length Units` in the head of a take of Motive, expected Meters, Centimeters or Millimeters");
     };
     let Some((_, unit)) = UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(stated)) else {
-        return At(1).refuse(format!(
+        return FileLine(1).refuse(format!(
             "found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"
         ));
     };
@@ -56,11 +56,13 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let (bodies, unnamed) = labels.bodies(value("Rotation Type").unwrap_or("Quaternion"))?;
     let is_time = |it: &&str| it.starts_with("Time") && !it.starts_with("TimeCode");
     let Some(time) = labels.axes.iter().position(is_time) else {
-        return At(labels.line).refuse("found no column `Time`, expected the time of each frame in seconds");
+        return FileLine(labels.line)
+            .refuse("found no column `Time`, expected the time of each frame in seconds");
     };
-    let frames = Frames::from_lines(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
+    let frames =
+        RecordedFrames::from_lines(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
     let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
-    let frames = Frames { unnamed, are_unnamed, ..frames };
+    let frames = RecordedFrames { unnamed, are_unnamed, ..frames };
     let mut made = frames.table(&bodies, "body or marker", opening)?;
     let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
     if let Some(stated) = stated.filter(|it| *it != frames.all.len()) {
@@ -70,7 +72,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
 }
 
 impl<'t> Labels<'t> {
-    fn from_text(text: &'t str) -> Result<Self, Refused> {
+    fn from_text(text: &'t str) -> Result<Self, Refusal> {
         let mut found: Vec<Vec<&str>> = Vec::new();
         for (line, content) in lines(text).skip(1).take(12) {
             let axes = cells(content, ',');
@@ -86,7 +88,7 @@ impl<'t> Labels<'t> {
             }
             found.push(axes);
         }
-        Refused::whole(
+        Refusal::refuse_whole(
             "found the head of a take of Motive without the lines that name bodies, Rotation and Position and begin with `Frame`, expected them: export \
              the take with its header",
         )
@@ -130,20 +132,20 @@ impl<'t> Labels<'t> {
     }
 
     /// Bodies with poses; or, if there are none, markers with names and markers without.
-    fn bodies(&self, rotation: &str) -> Result<(Vec<Body>, Vec<Body>), Refused> {
-        let body = |name: &str, of: &str| -> Option<Body> {
+    fn bodies(&self, rotation: &str) -> Result<(Vec<RecordedBody>, Vec<RecordedBody>), Refusal> {
+        let body = |name: &str, of: &str| -> Option<RecordedBody> {
             let at = |kind, axis| self.column(name, of, kind, axis);
             let position = [at("Position", "X")?, at("Position", "Y")?, at("Position", "Z")?];
             let [x, y, z, w] = ["X", "Y", "Z", "W"].map(|axis| at("Rotation", axis));
             let quaternion = x.zip(y).zip(z.zip(w)).map(|((x, y), (z, w))| [x, y, z, w]);
-            Some(Body { name: name.to_owned(), position, quaternion })
+            Some(RecordedBody { name: name.to_owned(), position, quaternion })
         };
-        let of = |of: &str| -> Vec<Body> {
+        let of = |of: &str| -> Vec<RecordedBody> {
             self.names(of).into_iter().filter_map(|name| body(name, of)).collect()
         };
         let bodies = of("Rigid Body");
         if bodies.iter().any(|it| it.quaternion.is_none()) && !rotation.eq_ignore_ascii_case("quaternion") {
-            return At(1).refuse(format!(
+            return FileLine(1).refuse(format!(
                 "found the rotation type `{rotation}`, expected Quaternion: export the take with quaternions"
             ));
         }
@@ -151,13 +153,14 @@ impl<'t> Labels<'t> {
             return Ok((bodies, Vec::new()));
         }
         // Markers without a label have another number each time they reappear.
-        let markers = of("Marker").into_iter().map(|it| Body { quaternion: None, ..it });
-        let (unnamed, named): (Vec<Body>, Vec<Body>) = markers.partition(|it| it.name.starts_with(UNNAMED));
+        let markers = of("Marker").into_iter().map(|it| RecordedBody { quaternion: None, ..it });
+        let (unnamed, named): (Vec<RecordedBody>, Vec<RecordedBody>) =
+            markers.partition(|it| it.name.starts_with(UNNAMED));
         match (named.is_empty(), unnamed.is_empty()) {
             (false, _) => Ok((named, unnamed)),
             // Markers without a label that are present from the beginning, if their distances form a rigid body.
             (true, false) => Ok((unnamed, named)),
-            (true, true) => At(self.line)
+            (true, true) => FileLine(self.line)
                 .refuse("found neither a rigid body nor a marker with a name, expected one on the robot"),
         }
     }

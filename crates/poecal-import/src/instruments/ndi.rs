@@ -1,40 +1,40 @@
 //! Tables that NDI's recorders write: the time of day in four columns, and up to 26 tools side by side (`Xa`, `Ya`, `Za`, `qoa`, `qxa`, …). Lengths
 //! are in millimetres, and all numbers are zero if a tool was not seen.
 
-use super::bodies::{Body, Frames};
-use super::maker::{Made, Refused};
-use super::words::{Head, lines, number};
-use super::{Form, Opening};
+use super::bodies::{RecordedBody, RecordedFrames};
+use super::made_table::{MadeTable, Refusal};
+use super::words::{HeadLine, lines, number};
+use super::{FileForm, OpeningContext};
 use crate::Separator;
 
-pub(crate) const FORM: Form = Form { title: "a recording of an NDI tracker", is_it, table };
+pub(crate) const FORM: FileForm = FileForm { title: "a recording of an NDI tracker", is_it, table };
 
 const FIRST: usize = 10;
 /// Columns of the time of day, with the number of seconds in each unit.
 const TIME: [(&str, f64); 4] = [("Hour", 3600.0), ("Minutes", 60.0), ("Seconds", 1.0), ("ms", 1e-3)];
 
-fn head(text: &str) -> Option<Head<'_>> {
-    let mut some = lines(text).take(FIRST).map(|it| Head::from_line(it, Separator::Comma));
+fn head(text: &str) -> Option<HeadLine<'_>> {
+    let mut some = lines(text).take(FIRST).map(|it| HeadLine::from_line(it, Separator::Comma));
     some.find(|it| it.has(&["Xa", "Ya", "Za", "qoa"]))
 }
 
-fn is_it(text: &str, _: &Opening<'_>) -> bool {
+fn is_it(text: &str, _: &OpeningContext<'_>) -> bool {
     head(text).is_some()
 }
 
-fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let head = head(text).ok_or("found no header")?;
     let body = |letter: char| {
-        let of = |stem: &str| head.at(&format!("{stem}{letter}"));
+        let of = |stem: &str| head.column_of(&format!("{stem}{letter}"));
         let quaternion = || Some([of("qx")?, of("qy")?, of("qz")?, of("qo")?]);
         let position = [of("X")?, of("Y")?, of("Z")?];
-        Some(Body { name: letter.to_string(), position, quaternion: quaternion() })
+        Some(RecordedBody { name: letter.to_string(), position, quaternion: quaternion() })
     };
-    let bodies: Vec<Body> = ('a'..='z').filter_map(body).collect();
-    let time = TIME.map(|(name, seconds)| Some((head.at(name)?, seconds)));
+    let bodies: Vec<RecordedBody> = ('a'..='z').filter_map(body).collect();
+    let time = TIME.map(|(name, seconds)| Some((head.column_of(name)?, seconds)));
     let expected = head.names.len();
     let mut days = 0.0;
-    let frames = Frames::from_lines(text, (head.line, ("mm", 1e-3)), ',', |cells, _, before| {
+    let frames = RecordedFrames::from_lines(text, (head.line, ("mm", 1e-3)), ',', |cells, _, before| {
         if cells.len() < expected {
             return Err(format!("found {} cells, expected {expected} as in the header", cells.len()));
         }

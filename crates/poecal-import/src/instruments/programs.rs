@@ -1,19 +1,19 @@
 //! Joint readings of robot programs: RAPID, that of Rokae, KRL, FANUC's and URScript, in the order of their motions.
 
-use super::maker::{At, Column, Made, Refused, Value};
+use super::made_table::{CellValue, FileLine, MadeTable, Refusal, TableColumn};
 use super::words::{lines, number};
-use super::{Form, Opening};
+use super::{FileForm, OpeningContext};
 use poecal_numerics::error::first_few;
 use poecal_programs::{Language, joint_targets};
 
-pub(crate) const FORM: Form = Form { title: "a robot program", is_it, table };
+pub(crate) const FORM: FileForm = FileForm { title: "a robot program", is_it, table };
 
 /// Number of lines in which a language is sought.
 const FIRST: usize = 200;
 /// Beginning of joint targets in Rokae's programs.
 const ROKAE: &str = "= j:{";
 
-fn is_it(text: &str, _: &Opening<'_>) -> bool {
+fn is_it(text: &str, _: &OpeningContext<'_>) -> bool {
     language(text).is_some() || is_rokae(text)
 }
 
@@ -43,41 +43,41 @@ fn language(text: &str) -> Option<Language> {
     })
 }
 
-fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     if is_rokae(text) {
         return of_rokae(text, opening);
     }
     let language = language(text).ok_or("found no program")?;
     let found = joint_targets(language, text.as_bytes(), opening.robot);
-    let found = found.map_err(|error| Refused::from_error(&error))?;
+    let found = found.map_err(|error| Refusal::from_error(&error))?;
     let title = language.title();
     if let Some(line) = found.poses.first() {
         let (targets, are) = match found.poses.len() {
             1 => ("a target".to_owned(), "is a pose"),
             count => (format!("{count} targets"), "are poses"),
         };
-        return At(*line).refuse(format!(
+        return FileLine(*line).refuse(format!(
             "found a program of {title} with {targets} that {are}, which say nothing of the joints, expected joint targets alone: write them from the \
              controller's joint readings"
         ));
     }
     if let Some(listed) = found.listed.first() {
-        return At(listed.line).refuse(format!(
+        return FileLine(listed.line).refuse(format!(
             "found the target `{}` in a program of {title}, of which the joint readings are not known: {}",
             listed.name, listed.reason
         ));
     }
     // Targets that are numbers in a motion have no name.
     let is_named = language != Language::UrScript;
-    let mut made = begun(opening, is_named, found.targets.first().map_or(1, |it| it.0));
+    let mut made = start_table(opening, is_named, found.targets.first().map_or(1, |it| it.0));
     for (line, name, readings) in &found.targets {
         let name = name.replace(['[', ']'], "");
         let name = name.split(':').next().unwrap_or_default();
-        let id = is_named.then_some(Value::Text(name));
-        made.row(*line, id.into_iter().chain(readings.iter().map(|it| Value::Number(*it))));
+        let id = is_named.then_some(CellValue::Text(name));
+        made.row(*line, id.into_iter().chain(readings.iter().map(|it| CellValue::Number(*it))));
     }
     if made.rows() == 0 {
-        return Refused::whole(format!(
+        return Refusal::refuse_whole(format!(
             "found a program of {title} without joint targets, expected at least one"
         ));
     }
@@ -86,20 +86,21 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
 }
 
 /// The header: names of targets, and joints in the robot's order in radians and metres.
-fn begun(opening: &Opening<'_>, is_named: bool, line: usize) -> Made {
-    let id = is_named.then(|| Column::from("id"));
-    Made::new(line, id.into_iter().chain(opening.joint_columns("rad")))
+fn start_table(opening: &OpeningContext<'_>, is_named: bool, line: usize) -> MadeTable {
+    let id = is_named.then(|| TableColumn::from("id"));
+    MadeTable::new(line, id.into_iter().chain(opening.joint_columns("rad")))
 }
 
 /// Reads Rokae's dialect: `LOCAL VAR jointtarget j1 = j:{63.68,…,0}{EJ 0,…}`, degrees.
-fn of_rokae(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+fn of_rokae(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let names = opening.robot.joint_reading_names();
-    let mut made = begun(opening, true, 1);
+    let mut made = start_table(opening, true, 1);
     for (line, content) in lines(text).filter(|it| it.1.contains("jointtarget")) {
-        let (name, values) = rokae_target(content, &names).or_else(|message| At(line).refuse(message))?;
+        let (name, values) =
+            rokae_target(content, &names).or_else(|message| FileLine(line).refuse(message))?;
         let readings = values.into_iter().zip(opening.slides());
         let si = readings.map(|(value, slides)| if slides { value * 1e-3 } else { value.to_radians() });
-        made.row(line, std::iter::once(Value::Text(name)).chain(si.map(Value::Number)));
+        made.row(line, std::iter::once(CellValue::Text(name)).chain(si.map(CellValue::Number)));
     }
     made.say(format!("joint targets of Rokae, {}, in degrees", made.rows()));
     Ok(made)

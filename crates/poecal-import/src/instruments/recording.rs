@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::maker::Made;
+use super::made_table::MadeTable;
 use poecal_numerics::error::{Error, ErrorKind};
 
 /// Reason why a file has no table of a kind.
 #[derive(Clone, Debug)]
-pub(crate) struct Missing {
+pub(crate) struct MissingTable {
     pub(crate) why: String,
     /// True if the file has nothing of the kind; false if it has too much.
     pub(crate) is_nothing: bool,
@@ -16,8 +16,8 @@ pub(crate) struct Missing {
 /// A file that may hold joint readings and measurements.
 #[derive(Clone, Debug)]
 pub(crate) struct Recording {
-    pub(crate) joints: Result<Made, Missing>,
-    pub(crate) measured: Result<Made, Missing>,
+    pub(crate) joints: Result<MadeTable, MissingTable>,
+    pub(crate) measured: Result<MadeTable, MissingTable>,
     /// Its contents, in words.
     pub(crate) contents: String,
     /// Requested topics that the file has, each with whether it is read.
@@ -45,7 +45,7 @@ impl Recording {
     }
 
     /// Its tables, each with whether it has joint readings; a table that is left out is named with the other.
-    pub(crate) fn tables(&self) -> Vec<(bool, Made)> {
+    pub(crate) fn tables(&self) -> Vec<(bool, MadeTable)> {
         let mut found = Vec::new();
         for (is_joints, own, other) in
             [(true, &self.joints, &self.measured), (false, &self.measured, &self.joints)]

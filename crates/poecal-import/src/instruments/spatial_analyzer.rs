@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use super::maker::{At, Column, Made, Refused, Value, place};
+use super::made_table::{CellValue, FileLine, MadeTable, Refusal, TableColumn, place};
 use super::words::{are_targets, cells, is_no_number, lines, number, repeats};
-use super::{Form, Opening};
+use super::{FileForm, OpeningContext};
 use crate::Separator;
 
-pub(crate) const FORM: Form = Form { title: "points of SpatialAnalyzer", is_it, table };
+pub(crate) const FORM: FileForm = FileForm { title: "points of SpatialAnalyzer", is_it, table };
 
 /// Number of lines in which the comments are sought.
 const FIRST: usize = 20;
@@ -21,7 +21,7 @@ struct Comments<'t> {
 }
 
 /// A line, split into its parts.
-struct Point<'t> {
+struct PointLine<'t> {
     line: usize,
     names: Vec<&'t str>,
     numbers: Vec<&'t str>,
@@ -30,7 +30,7 @@ struct Point<'t> {
 }
 
 /// Meaning of the numbers of a line.
-struct Layout {
+struct PointColumns {
     /// Numbers before the coordinates: a name that is a number, and the index of a point in its group.
     first: usize,
     /// True if the first of these is the name.
@@ -44,39 +44,41 @@ fn comment(line: &str) -> Option<&str> {
     line.trim().strip_prefix("//")
 }
 
-fn is_it(text: &str, _: &Opening<'_>) -> bool {
+fn is_it(text: &str, _: &OpeningContext<'_>) -> bool {
     let marks = ["SpatialAnalyzer", "Relative to Coordinate Frame", "AXES ="];
     let mut comments = lines(text).take(FIRST).filter_map(|it| comment(it.1));
     comments.any(|line| marks.iter().any(|it| line.contains(it)))
 }
 
-fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, _: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let Comments { frame, is_cylindrical, unit } = Comments::from_text(text)?;
     let points = lines(text).filter(|it| comment(it.1).is_none());
-    let point = |(line, content): (usize, _)| Point::from_line(line, content).or_else(|why| At(line).refuse(why));
-    let points: Vec<Point<'_>> = points.map(point).collect::<Result<_, _>>()?;
+    let point = |(line, content): (usize, _)| {
+        PointLine::from_line(line, content).or_else(|why| FileLine(line).refuse(why))
+    };
+    let points: Vec<PointLine<'_>> = points.map(point).collect::<Result<_, _>>()?;
     let first =
         points.first().ok_or("found comments of SpatialAnalyzer and no point, expected at least one")?;
     refuse_unlike(first, &points)?;
-    let layout = Layout::from_points(first, &points).or_else(|why| At(first.line).refuse(why))?;
+    let layout = PointColumns::from_points(first, &points).or_else(|why| FileLine(first.line).refuse(why))?;
     let (names, have_targets) = layout.names(&points);
-    let sigmas = ["sigma_x", "sigma_y", "sigma_z"].map(|it| Column::from(it).in_unit(unit));
-    let columns = std::iter::once(Column::from(if have_targets { "target" } else { "id" }))
+    let sigmas = ["sigma_x", "sigma_y", "sigma_z"].map(|it| TableColumn::from(it).in_unit(unit));
+    let columns = std::iter::once(TableColumn::from(if have_targets { "target" } else { "id" }))
         .chain(place(unit))
         .chain(sigmas.into_iter().filter(|_| layout.has_uncertainties));
-    let mut made = Made::new(first.line, columns);
+    let mut made = MadeTable::new(first.line, columns);
     for (point, name) in points.iter().zip(&names) {
         let numbers = point.numbers.get(layout.first..).unwrap_or_default();
-        let mut row: Vec<Value<'_>> = numbers.iter().map(|it| Value::Text(it)).collect();
+        let mut row: Vec<CellValue<'_>> = numbers.iter().map(|it| CellValue::Text(it)).collect();
         if let ([radius, angle, ..], true) = (numbers, is_cylindrical) {
             let (radius, angle) = (number(radius).unwrap_or_default(), number(angle).unwrap_or_default());
             let (sine, cosine) = angle.to_radians().sin_cos();
-            row.splice(..2, [radius * cosine, radius * sine].map(Value::Number));
+            row.splice(..2, [radius * cosine, radius * sine].map(CellValue::Number));
         }
         if layout.has_offsets {
             row.drain(3..5);
         }
-        made.row(point.line, std::iter::once(Value::Text(name)).chain(row));
+        made.row(point.line, std::iter::once(CellValue::Text(name)).chain(row));
     }
     let count = points.len();
     made.say(match frame {
@@ -94,7 +96,7 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         made.say("three uncertainties of each point are taken as standard deviations of x, y, z");
     }
     if have_targets {
-        made.say(format!("names come again, and are those of {} targets", different(&names)));
+        made.say(format!("names come again, and are those of {} targets", count_different(&names)));
     } else {
         let lines: Vec<usize> = points.iter().map(|it| it.line).collect();
         made.warned.extend(repeats(&names, &lines));
@@ -103,17 +105,17 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
 }
 
 /// Number of different names.
-fn different(names: &[String]) -> usize {
+fn count_different(names: &[String]) -> usize {
     names.iter().collect::<BTreeSet<_>>().len()
 }
 
 /// Refuses points whose lines differ in form.
-fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused> {
-    let counts = |it: &Point<'_>| (it.names.len(), it.numbers.len());
+fn refuse_unlike(first: &PointLine<'_>, points: &[PointLine<'_>]) -> Result<(), Refusal> {
+    let counts = |it: &PointLine<'_>| (it.names.len(), it.numbers.len());
     let (words, count) = counts(first);
     if let Some(other) = points.iter().find(|it| counts(it) != (words, count)) {
         let (own_words, own_count) = counts(other);
-        return At(other.line).refuse(format!(
+        return FileLine(other.line).refuse(format!(
             "found {own_words} names and {own_count} numbers, expected {words} and {count} as in line {}",
             first.line
         ));
@@ -121,16 +123,16 @@ fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused>
     // A line that was cut has no time, and its last number may be incomplete.
     let timed = points.iter().filter(|it| it.has_time).count();
     match points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
-        Some(other) => At(other.line).refuse("found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out"),
+        Some(other) => FileLine(other.line).refuse("found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out"),
         None => Ok(()),
     }
 }
 
 impl<'t> Comments<'t> {
-    fn from_text(text: &'t str) -> Result<Self, Refused> {
-        let frame = stated(text, "Coordinate Frame", "the frame")?.map(|it| it.1);
-        let Some((line, axes)) = stated(text, "AXES", "axes and unit")? else {
-            return Refused::whole(
+    fn from_text(text: &'t str) -> Result<Self, Refusal> {
+        let frame = find_stated(text, "Coordinate Frame", "the frame")?.map(|it| it.1);
+        let Some((line, axes)) = find_stated(text, "AXES", "axes and unit")? else {
+            return Refusal::refuse_whole(
                 "found points of SpatialAnalyzer without the line `// AXES = …` that states their unit, expected it: export them with comments, or \
                  name the columns by number in a mapping (--columns)",
             );
@@ -144,14 +146,14 @@ impl<'t> Comments<'t> {
             Some("CARTESIAN") => false,
             Some("CYLINDRICAL") => true,
             _ => {
-                return At(line).refuse("found coordinates that are neither Cartesian nor cylindrical, expected x, y and z: export the points as Cartesian");
+                return FileLine(line).refuse("found coordinates that are neither Cartesian nor cylindrical, expected x, y and z: export the points as Cartesian");
             }
         };
         if unit.is_empty() {
-            return At(line).refuse("found no unit in brackets, as `(mm)`, expected one");
+            return FileLine(line).refuse("found no unit in brackets, as `(mm)`, expected one");
         }
         if is_cylindrical && !is_degrees {
-            return At(line).refuse(
+            return FileLine(line).refuse(
                 "found angles in another unit than degrees, expected deg: export the points as Cartesian",
             );
         }
@@ -160,14 +162,14 @@ impl<'t> Comments<'t> {
 }
 
 /// The word that the comments state behind a key, with its line. A table cannot separate points of several frames or units.
-fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t str)>, Refused> {
+fn find_stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t str)>, Refusal> {
     let mut all = lines(text).filter_map(|(line, content)| {
         let behind = comment(content)?.split_once(key)?.1.trim_matches([' ', '=', '\'', '"']);
         Some((line, behind))
     });
     let Some(first) = all.next() else { return Ok(None) };
     match all.find(|it| it.1 != first.1) {
-        Some((line, other)) => At(line).refuse(format!(
+        Some((line, other)) => FileLine(line).refuse(format!(
             "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
             first.1
         )),
@@ -175,7 +177,7 @@ fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t
     }
 }
 
-impl<'t> Point<'t> {
+impl<'t> PointLine<'t> {
     /// The point of a line, or the defect of the line.
     fn from_line(line: usize, content: &'t str) -> Result<Self, String> {
         let content = content.trim();
@@ -212,13 +214,13 @@ impl<'t> Point<'t> {
             let of = |part: &str| part.as_ptr() as usize - content.as_ptr() as usize;
             parts = content.get(of(first)..of(last) + last.len()).into_iter().collect();
         }
-        Ok(Point { line, names: parts, numbers, has_time })
+        Ok(PointLine { line, names: parts, numbers, has_time })
     }
 }
 
-impl Layout {
+impl PointColumns {
     /// The meaning of the numbers of points, of which this is the first one.
-    fn from_points(first: &Point<'_>, points: &[Point<'_>]) -> Result<Self, String> {
+    fn from_points(first: &PointLine<'_>, points: &[PointLine<'_>]) -> Result<Self, String> {
         let is_digits = |it: &str| it.bytes().all(|it| it.is_ascii_digit());
         let is_whole = |at: usize| points.iter().all(|it| it.numbers.get(at).is_some_and(|it| is_digits(it)));
         // A point has a name in any case: it may be a number.
@@ -246,12 +248,12 @@ impl Layout {
         }
         let first = named + usize::from(has_index);
         let (has_offsets, has_uncertainties) = (matches!(rest, 5 | 8), rest >= 6);
-        Ok(Layout { first, is_named_by_number, has_offsets, has_uncertainties })
+        Ok(PointColumns { first, is_named_by_number, has_offsets, has_uncertainties })
     }
 
     /// The points' names, and whether they are those of targets, since they recur.
-    fn names(&self, points: &[Point<'_>]) -> (Vec<String>, bool) {
-        let parts = |point: &Point<'_>| -> Vec<String> {
+    fn names(&self, points: &[PointLine<'_>]) -> (Vec<String>, bool) {
+        let parts = |point: &PointLine<'_>| -> Vec<String> {
             let words = point.names.iter().flat_map(|it| it.split("::")).map(str::trim);
             let number = point.numbers.first().filter(|_| self.is_named_by_number);
             words.chain(number.copied()).map(str::to_owned).collect()
@@ -260,7 +262,7 @@ impl Layout {
         let last: Vec<String> = parts.iter().filter_map(|it| it.last().cloned()).collect();
         let whole: Vec<String> = parts.iter().map(|it| it.join("::")).collect();
         let are_targets = are_targets(&whole);
-        let is_whole = !are_targets && different(&whole) > different(&last);
+        let is_whole = !are_targets && count_different(&whole) > count_different(&last);
         (if is_whole { whole } else { last }, are_targets)
     }
 }

@@ -1,12 +1,12 @@
 //! Reports of robot makers with two sets of coordinates in a row, nominal and measured. Each set is a table, and the robot decides which one is
 //! taken.
 
-use super::maker::{At, Called, Column, Made, Refused, Value};
-use super::words::{Head, lines, name_and_unit, number};
-use super::{Form, Opening};
-use crate::table::roles::{Role, plain};
+use super::made_table::{CellValue, CoordinateName, FileLine, MadeTable, Refusal, TableColumn};
+use super::words::{HeadLine, lines, name_and_unit, number};
+use super::{FileForm, OpeningContext};
+use crate::table::roles::{ColumnRole, plain_letters};
 
-pub(crate) const FORM: Form = Form { title: "a report with two sets of coordinates", is_it, table };
+pub(crate) const FORM: FileForm = FileForm { title: "a report with two sets of coordinates", is_it, table };
 
 /// Number of lines in which the header is sought.
 const FIRST: usize = 20;
@@ -16,7 +16,7 @@ const ANGLES: [&str; 12] = ["a", "b", "c", "rx", "ry", "rz", "w", "p", "r", "rol
 
 /// Role of a column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+enum SetColumn {
     /// Column of no set.
     Other,
     /// A coordinate of a set.
@@ -27,18 +27,21 @@ enum Part {
 
 /// The sets of a table.
 struct Sets<'t> {
-    head: Head<'t>,
-    parts: Vec<Part>,
-    called: [Called; 2],
+    head: HeadLine<'t>,
+    parts: Vec<SetColumn>,
+    called: [CoordinateName; 2],
 }
 
-fn called(word: &str) -> Option<Called> {
-    let of = [(Role::MeasuredSet, Called::Measured), (Role::NominalSet, Called::Nominal)];
+fn coordinate_name(word: &str) -> Option<CoordinateName> {
+    let of = [
+        (ColumnRole::MeasuredSet, CoordinateName::Measured),
+        (ColumnRole::NominalSet, CoordinateName::Nominal),
+    ];
     of.into_iter().find(|it| it.0.has(word)).map(|it| it.1)
 }
 
 /// The coordinate that the name of a column states, with the name of its set.
-fn coordinate(name: &str) -> Option<(&'static str, Option<Called>)> {
+fn coordinate(name: &str) -> Option<(&'static str, Option<CoordinateName>)> {
     let all = || PLACE.into_iter().chain(ANGLES);
     if let Some(known) = all().find(|it| *it == name) {
         return Some((known, None));
@@ -46,7 +49,7 @@ fn coordinate(name: &str) -> Option<(&'static str, Option<Called>)> {
     // The longest one, since `rx` ends with `x` too.
     let of = |known: &'static str| {
         let word = name.strip_suffix(known).or_else(|| name.strip_prefix(known))?;
-        Some((known, Some(called(word)?)))
+        Some((known, Some(coordinate_name(word)?)))
     };
     all().filter_map(of).max_by_key(|it| it.0.len())
 }
@@ -57,27 +60,27 @@ fn parts(cell: &str) -> (&str, Option<&str>) {
 }
 
 /// The columns of two sets by their names and by the words above them; such a word applies to all columns up to the next one.
-fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<Part>, [Called; 2])> {
+fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<SetColumn>, [CoordinateName; 2])> {
     let mut word = None;
-    let mut found: Vec<Option<(&str, Option<Called>)>> = Vec::with_capacity(names.len());
+    let mut found: Vec<Option<(&str, Option<CoordinateName>)>> = Vec::with_capacity(names.len());
     for (at, cell) in names.iter().enumerate() {
-        let own = over.get(at).map(|it| plain(it)).filter(|it| !it.is_empty());
-        word = own.map_or(word, |it| called(&it));
-        found.push(coordinate(&plain(parts(cell).0)).map(|(name, own)| (name, own.or(word))));
+        let own = over.get(at).map(|it| plain_letters(it)).filter(|it| !it.is_empty());
+        word = own.map_or(word, |it| coordinate_name(&it));
+        found.push(coordinate(&plain_letters(parts(cell).0)).map(|(name, own)| (name, own.or(word))));
     }
-    let named = |it: Called| found.contains(&Some(("x", Some(it))));
-    let are_named = named(Called::Nominal) && named(Called::Measured);
+    let named = |it: CoordinateName| found.contains(&Some(("x", Some(it))));
+    let are_named = named(CoordinateName::Nominal) && named(CoordinateName::Measured);
     let mut seen: [Vec<&str>; 2] = Default::default();
     let mut of_sets = Vec::with_capacity(found.len());
     for coordinate in found {
         let set = coordinate.and_then(|(name, own)| match (are_named, own) {
-            (true, Some(Called::Nominal)) => Some((name, 0)),
-            (true, Some(Called::Measured)) => Some((name, 1)),
+            (true, Some(CoordinateName::Nominal)) => Some((name, 0)),
+            (true, Some(CoordinateName::Measured)) => Some((name, 1)),
             (true, _) => None,
             (false, _) => Some((name, usize::from(seen[0].contains(&name)))),
         });
         let Some((name, set)) = set else {
-            of_sets.push(Part::Other);
+            of_sets.push(SetColumn::Other);
             continue;
         };
         if seen[set].contains(&name) {
@@ -85,25 +88,29 @@ fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<Part>, [Called; 2])> {
         }
         seen[set].push(name);
         let place = PLACE.into_iter().find(|it| *it == name);
-        of_sets.push(place.map_or(Part::Angle, |it| Part::Place(set, it)));
+        of_sets.push(place.map_or(SetColumn::Angle, |it| SetColumn::Place(set, it)));
     }
     let has_all = |seen: &Vec<&str>| PLACE.iter().all(|it| seen.contains(it));
-    let called = if are_named { [Called::Nominal, Called::Measured] } else { [Called::Unnamed; 2] };
+    let called = if are_named {
+        [CoordinateName::Nominal, CoordinateName::Measured]
+    } else {
+        [CoordinateName::Unnamed; 2]
+    };
     (seen.iter().all(has_all) && seen[0].len() == seen[1].len()).then_some((of_sets, called))
 }
 
 /// The columns of a set and of no set, with their names.
-fn columns(names: &[&str], of: &[Part], set: usize) -> Vec<(usize, Column)> {
-    let column = |(at, part): (usize, &Part)| {
+fn columns(names: &[&str], of: &[SetColumn], set: usize) -> Vec<(usize, TableColumn)> {
+    let column = |(at, part): (usize, &SetColumn)| {
         let cell = *names.get(at)?;
         match part {
-            Part::Other => Some((at, Column::from(cell))),
-            Part::Place(own, name) if *own == set => {
+            SetColumn::Other => Some((at, TableColumn::from(cell))),
+            SetColumn::Place(own, name) if *own == set => {
                 let unit = parts(cell).1;
-                let column = Column::from(*name);
+                let column = TableColumn::from(*name);
                 Some((at, unit.map_or(column.clone(), |unit| column.in_unit(unit))))
             }
-            Part::Place(..) | Part::Angle => None,
+            SetColumn::Place(..) | SetColumn::Angle => None,
         }
     };
     of.iter().enumerate().filter_map(column).collect()
@@ -111,11 +118,11 @@ fn columns(names: &[&str], of: &[Part], set: usize) -> Vec<(usize, Column)> {
 
 /// Columns of each of two sets.
 #[cfg(feature = "workbooks")]
-type SetColumns = [Vec<(usize, Column)>; 2];
+type SetColumns = [Vec<(usize, TableColumn)>; 2];
 
 /// The columns of each of two sets, by their names, with the names of the sets.
 #[cfg(feature = "workbooks")]
-pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [Called; 2])> {
+pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [CoordinateName; 2])> {
     let (parts, called) = sort(names, &[])?;
     Some(([0, 1].map(|set| columns(names, &parts, set)), called))
 }
@@ -123,11 +130,11 @@ pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [Called; 2])> {
 impl<'t> Sets<'t> {
     /// The sets in a line with their names, which may be in the line above.
     fn from_line(line: (usize, &'t str), above: Option<(usize, &'t str)>) -> Option<Self> {
-        let head = Head::recognised(line);
+        let head = HeadLine::recognise(line);
         if head.names.iter().any(|it| number(it).is_some()) {
             return None;
         }
-        let over = above.map(|it| Head::from_line(it, head.by).names).unwrap_or_default();
+        let over = above.map(|it| HeadLine::from_line(it, head.by).names).unwrap_or_default();
         let (parts, called) = sort(&head.names, &over)?;
         Some(Sets { head, parts, called })
     }
@@ -140,16 +147,16 @@ impl<'t> Sets<'t> {
     }
 
     /// The table of a set.
-    fn table(&self, text: &'t str, set: usize) -> Result<Made, Refused> {
-        let (taken, columns): (Vec<usize>, Vec<Column>) =
+    fn table(&self, text: &'t str, set: usize) -> Result<MadeTable, Refusal> {
+        let (taken, columns): (Vec<usize>, Vec<TableColumn>) =
             columns(&self.head.names, &self.parts, set).into_iter().unzip();
-        let mut made = Made::new(self.head.line, columns);
+        let mut made = MadeTable::new(self.head.line, columns);
         let header = format!("the header (line {})", self.head.line);
         for (line, found) in self.head.rows(text) {
             self.head.refuse_longer(line, &found, &header)?;
-            made.row(line, taken.iter().map(|at| Value::at(&found, *at)));
+            made.row(line, taken.iter().map(|at| CellValue::cell_at(&found, *at)));
         }
-        if self.parts.contains(&Part::Angle) {
+        if self.parts.contains(&SetColumn::Angle) {
             made.say(
                 "the positions alone, since angles do not say their convention, which a mapping does (--columns)",
             );
@@ -159,18 +166,18 @@ impl<'t> Sets<'t> {
 }
 
 /// True if a text has two sets of coordinates and the robot reads neither, unlike in a test of commanded poses.
-fn is_it(text: &str, opening: &Opening<'_>) -> bool {
+fn is_it(text: &str, opening: &OpeningContext<'_>) -> bool {
     let names = opening.robot.reading_names();
-    let is_of_set = |name: &String| coordinate(&plain(name)).is_some_and(|it| it.1.is_some());
+    let is_of_set = |name: &String| coordinate(&plain_letters(name)).is_some_and(|it| it.1.is_some());
     let is_read = !names.is_empty() && names.iter().all(is_of_set);
     !is_read && Sets::of_text(text).is_some()
 }
 
-fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, _: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let sets = Sets::of_text(text).ok_or("found no header")?;
     let (first, second) = (sets.table(text, 0)?, sets.table(text, 1)?);
     if first.rows() == 0 {
-        return At(sets.head.line).refuse("found a header and no rows, expected rows below `x`");
+        return FileLine(sets.head.line).refuse("found a header and no rows, expected rows below `x`");
     }
     Ok(first.with_other(sets.called, second))
 }
@@ -184,17 +191,17 @@ mod tests {
         for (text, called) in [
             (
                 "id,Nominal X (mm),Nominal Y (mm),Nominal Z (mm),Measured X (mm),Measured Y (mm),Measured Z (mm)\n",
-                [Called::Nominal, Called::Measured],
+                [CoordinateName::Nominal, CoordinateName::Measured],
             ),
             (
                 "No.;x_nom;y_nom;z_nom;a_nom;b_nom;c_nom;x_act;y_act;z_act;a_act;b_act;c_act\n",
-                [Called::Nominal, Called::Measured],
+                [CoordinateName::Nominal, CoordinateName::Measured],
             ),
             (
                 "report\n,Measured,,,Nominal,,\nP,x[mm],y[mm],z[mm],x[mm],y[mm],z[mm]\n",
-                [Called::Nominal, Called::Measured],
+                [CoordinateName::Nominal, CoordinateName::Measured],
             ),
-            ("X\tY\tZ\tA\tB\tC\tX\tY\tZ\tA\tB\tC\n", [Called::Unnamed; 2]),
+            ("X\tY\tZ\tA\tB\tC\tX\tY\tZ\tA\tB\tC\n", [CoordinateName::Unnamed; 2]),
         ] {
             let sets = Sets::of_text(text).unwrap_or_else(|| panic!("{text}"));
             assert_eq!(sets.called, called, "{text}");

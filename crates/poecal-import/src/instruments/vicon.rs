@@ -5,19 +5,19 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 
-use super::bodies::{Body, Frames, cells};
-use super::maker::{At, Made, Refused, Value};
-use super::words::{lines, number, quoted};
-use super::{Form, Opening};
+use super::bodies::{RecordedBody, RecordedFrames, cells};
+use super::made_table::{CellValue, FileLine, MadeTable, Refusal};
+use super::words::{lines, number, quote_names};
+use super::{FileForm, OpeningContext};
 
-pub(crate) const FORM: Form = Form { title: "an export of Vicon", is_it, table };
+pub(crate) const FORM: FileForm = FileForm { title: "an export of Vicon", is_it, table };
 
 /// Names of parts of an export that are read, first those with poses.
 const PARTS: [&str; 3] = ["Segments", "Objects", "Trajectories"];
 /// Units of positions, with their sizes in metres.
 const UNITS: [(&str, f64); 3] = [("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)];
 
-fn is_it(text: &str, _: &Opening<'_>) -> bool {
+fn is_it(text: &str, _: &OpeningContext<'_>) -> bool {
     head(text).is_some()
 }
 
@@ -35,7 +35,7 @@ fn part(text: &str) -> Option<(usize, usize)> {
 }
 
 /// The lines of a head.
-struct Head<'t> {
+struct ViconHead<'t> {
     rate_hz: f64,
     names: Vec<&'t str>,
     columns: Vec<&'t str>,
@@ -45,30 +45,30 @@ struct Head<'t> {
     end: usize,
 }
 
-fn head(text: &str) -> Option<Head<'_>> {
+fn head(text: &str) -> Option<ViconHead<'_>> {
     let (first, end) = part(text)?;
     let mut own = lines(text).filter(|it| it.0 > first).map(|it| (it.0, cells(it.1, ',')));
     let rate_hz = number(own.next()?.1.first()?)?;
     let (names, (line, columns), units) = (own.next()?.1, own.next()?, own.next()?.1);
     let is_head = columns.first() == Some(&"Frame") && columns.len() > 4 && rate_hz > 0.0;
-    is_head.then_some(Head { rate_hz, names, columns, units, line, end })
+    is_head.then_some(ViconHead { rate_hz, names, columns, units, line, end })
 }
 
-impl Head<'_> {
+impl ViconHead<'_> {
     /// The one unit of all these columns.
-    fn unit(&self, columns: impl Iterator<Item = usize>, of: &str) -> Result<Option<&str>, Refused> {
+    fn unit(&self, columns: impl Iterator<Item = usize>, of: &str) -> Result<Option<&str>, Refusal> {
         let unit = |at: usize| self.units.get(at).copied().unwrap_or_default();
         let units: BTreeSet<&str> = columns.map(unit).collect();
         if units.len() > 1 {
-            let units = quoted(units);
-            return At(self.line + 1)
+            let units = quote_names(units);
+            return FileLine(self.line + 1)
                 .refuse(format!("found the units {units} of {of}, expected the same for all"));
         }
         Ok(units.first().copied())
     }
 
     /// Bodies or markers: each begins at the column with its name.
-    fn bodies(&self) -> Vec<(Body, Option<Vec<usize>>)> {
+    fn bodies(&self) -> Vec<(RecordedBody, Option<Vec<usize>>)> {
         let starts: Vec<usize> = (0..self.columns.len())
             .filter(|at| self.names.get(*at).is_some_and(|it| !it.is_empty()))
             .collect();
@@ -83,21 +83,21 @@ impl Head<'_> {
             let quaternion = at(&["RX", "RY", "RZ", "RW"]).and_then(|it| it.try_into().ok());
             let turn = at(&["RX", "RY", "RZ"]).filter(|_| quaternion.is_none());
             let name = self.names.get(start).copied().unwrap_or_default().to_owned();
-            Some((Body { name, position: [x, y, z], quaternion }, turn))
+            Some((RecordedBody { name, position: [x, y, z], quaternion }, turn))
         };
         starts.iter().copied().zip(ends).filter_map(body).collect()
     }
 }
 
-fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let head = head(text).ok_or("found no head of Vicon")?;
     let found = head.bodies();
     if found.is_empty() {
-        return At(head.line).refuse("found no columns TX, TY, TZ or X, Y, Z below the names of Vicon's segments or markers, expected them");
+        return FileLine(head.line).refuse("found no columns TX, TY, TZ or X, Y, Z below the names of Vicon's segments or markers, expected them");
     }
     let length = head.unit(found.iter().flat_map(|it| it.0.position), "positions")?.unwrap_or_default();
     let Some(unit) = UNITS.into_iter().find(|it| it.0 == length) else {
-        return At(head.line + 1)
+        return FileLine(head.line + 1)
             .refuse(format!("found the unit `{length}` of positions, expected mm, cm or m"));
     };
     let angle = head.unit(found.iter().filter_map(|it| it.1.as_ref()).flatten().copied(), "rotations")?;
@@ -105,31 +105,35 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         None | Some("rad") => 1.0,
         Some("deg") => 1.0_f64.to_radians(),
         Some(other) => {
-            return At(head.line + 1)
+            return FileLine(head.line + 1)
                 .refuse(format!("found the unit `{other}` of rotations, expected rad or deg"));
         }
     };
     let (expected, rate_hz) = (head.columns.len(), head.rate_hz);
     let own: usize = text.split_inclusive('\n').take(head.end - 1).map(str::len).sum();
-    let mut frames =
-        Frames::from_lines(text.get(..own).unwrap_or(text), (head.line + 1, unit), ',', |cells, count, _| {
+    let mut frames = RecordedFrames::from_lines(
+        text.get(..own).unwrap_or(text),
+        (head.line + 1, unit),
+        ',',
+        |cells, count, _| {
             if cells.len() > expected {
                 return Err(format!("found {} cells, expected {expected} as in the head", cells.len()));
             }
             let frame = cells.first().copied().and_then(number).unwrap_or(count as f64 + 1.0);
             Ok(Some((frame - 1.0) / rate_hz))
-        })?;
-    let mut bodies: Vec<Body> = Vec::with_capacity(found.len());
+        },
+    )?;
+    let mut bodies: Vec<RecordedBody> = Vec::with_capacity(found.len());
     let mut width = expected;
     for (mut body, turn) in found {
         if let Some(columns) = turn.and_then(|it| <[usize; 3]>::try_from(it).ok()) {
             frames.refuse_words(&body.name, &columns)?;
             for frame in &mut frames.all {
                 let vector = frame.numbers(columns).map(|it| Vector3::from(it) * to_rad);
-                frame.cells.resize(width, Value::Empty);
+                frame.cells.resize(width, CellValue::Empty);
                 let turned =
                     vector.map(|it| Pose::new(rotation::exp(&it), Vector3::zeros()).quaternion_xyzw());
-                frame.cells.extend(turned.map_or([Value::Empty; 4], |it| it.map(Value::Number)));
+                frame.cells.extend(turned.map_or([CellValue::Empty; 4], |it| it.map(CellValue::Number)));
             }
             body.quaternion = Some([0, 1, 2, 3].map(|part| width + part));
             width += 4;

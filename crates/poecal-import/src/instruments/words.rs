@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::maker::{At, Refused};
-use crate::join::join_words::numbered;
+use super::made_table::{FileLine, Refusal};
+use crate::join::join_words::number_lines;
 use crate::table::cells::{Separator, split};
-use crate::table::header_cells::bracketed;
+use crate::table::header_cells::split_brackets;
 use poecal_numerics::error::first_few;
 
 pub(crate) use crate::table::number::number_of as number;
@@ -27,30 +27,30 @@ pub(crate) fn cells(line: &str, separator: Separator) -> Vec<&str> {
 
 /// The name of a column and its unit, which is in one of these pairs of brackets.
 pub(crate) fn name_and_unit<'c>(cell: &'c str, brackets: &[[char; 2]]) -> (&'c str, Option<&'c str>) {
-    let found = brackets.iter().find_map(|[open, close]| bracketed(cell, *open, *close));
+    let found = brackets.iter().find_map(|[open, close]| split_brackets(cell, *open, *close));
     found.map_or((cell.trim(), None), |(name, unit)| (name.trim(), Some(unit.trim())))
 }
 
 /// A line that names columns.
-pub(crate) struct Head<'t> {
+pub(crate) struct HeadLine<'t> {
     pub(crate) line: usize,
     pub(crate) by: Separator,
     pub(crate) names: Vec<&'t str>,
 }
 
-impl<'t> Head<'t> {
+impl<'t> HeadLine<'t> {
     /// A line with the names in it.
     pub(crate) fn from_line((line, text): (usize, &'t str), by: Separator) -> Self {
-        Head { line, by, names: cells(text, by) }
+        HeadLine { line, by, names: cells(text, by) }
     }
 
     /// The line with its names, by the separator that is recognised.
-    pub(crate) fn recognised(line: (usize, &'t str)) -> Self {
-        Head::from_line(line, Separator::recognised(line.1))
+    pub(crate) fn recognise(line: (usize, &'t str)) -> Self {
+        HeadLine::from_line(line, Separator::recognise(line.1))
     }
 
     /// The column of a name.
-    pub(crate) fn at(&self, name: &str) -> Option<usize> {
+    pub(crate) fn column_of(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|it| *it == name)
     }
 
@@ -66,10 +66,10 @@ impl<'t> Head<'t> {
     }
 
     /// Refuses a line with more cells than the header.
-    pub(crate) fn refuse_longer(&self, line: usize, found: &[&str], header: &str) -> Result<(), Refused> {
+    pub(crate) fn refuse_longer(&self, line: usize, found: &[&str], header: &str) -> Result<(), Refusal> {
         match (found.len(), self.names.len()) {
             (found, expected) if found > expected => {
-                At(line).refuse(format!("found {found} cells, expected {expected} as in {header}"))
+                FileLine(line).refuse(format!("found {found} cells, expected {expected} as in {header}"))
             }
             _ => Ok(()),
         }
@@ -77,7 +77,7 @@ impl<'t> Head<'t> {
 }
 
 /// Names in backticks, the first few.
-pub(crate) fn quoted<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
+pub(crate) fn quote_names<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -> String {
     first_few(&names.into_iter().map(|it| format!("`{it}`")).collect::<Vec<_>>())
 }
 
@@ -94,7 +94,7 @@ pub(crate) fn repeats(names: &[String], lines: &[usize]) -> Option<String> {
         .map(|(name, rows)| {
             let own: Vec<String> =
                 rows.iter().filter_map(|at| lines.get(*at)).map(usize::to_string).collect();
-            format!("`{name}` in {}", numbered(&own))
+            format!("`{name}` in {}", number_lines(&own))
         })
         .collect();
     (!again.is_empty()).then(|| format!("names come again: {}", first_few(&again)))

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use calamine::{Data, Range};
 
-use super::maker::Refused;
+use super::made_table::Refusal;
 use super::words::number;
-use crate::table::places::Sheet;
+use crate::table::source_cells::WorkbookSheet;
 use crate::table::times::seconds_of;
 
 /// Seconds of a day, the unit of times in workbooks.
@@ -19,9 +19,9 @@ const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so
 pub(crate) fn refuse_uncomputed(
     formulas: &BTreeMap<(u32, u32), String>,
     range: &Range<Data>,
-    sheet: &Sheet,
+    sheet: &WorkbookSheet,
     (rows, columns): (&[usize], &[String]),
-) -> Result<(), Refused> {
+) -> Result<(), Refusal> {
     let (first_row, first_column) = range.start().unwrap_or_default();
     let place = |row: usize, column: usize| (first_row + row as u32, first_column + column as u32);
     let formula = |row: usize, column: usize| formulas.get(&place(row, column));
@@ -32,7 +32,7 @@ pub(crate) fn refuse_uncomputed(
             let cell = range.get((row, column)).unwrap_or(&Data::Empty);
             if matches!(cell, Data::Empty) {
                 let at = sheet.cell(column, first_row as usize + row + 1);
-                return Refused::whole(format!(
+                return Refusal::refuse_whole(format!(
                     "sheet `{}`, cell {at}: found the formula `={text}` without a result, expected one: {REMEDY}",
                     sheet.name
                 ));
@@ -41,7 +41,7 @@ pub(crate) fn refuse_uncomputed(
             zeros += usize::from(is_zero && text.trim() != "0");
         }
         if zeros == rows.len() && zeros > 1 {
-            return Refused::whole(format!(
+            return Refusal::refuse_whole(format!(
                 "sheet `{}`: found formulas in the column `{name}` whose results are all 0, as programs store them that do not compute, expected their \
                  numbers: {REMEDY}",
                 sheet.name

@@ -2,16 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use super::join_pairs::{Joined, Pairing};
-use super::join_words::{advice, counted, mm, words};
+use super::join_pairs::{JoinedReadings, Pairing};
+use super::join_words::{advice, count_configurations, mm, words};
 use crate::Join;
-use poecal_fit::input_doubts::joined;
-use poecal_fit::start::{Agreement, Order, Pair};
+use poecal_fit::input_doubts::joined_rows;
+use poecal_fit::start::{Agreement, RowOrder, RowPair};
 use poecal_numerics::error::Result;
 
 impl Pairing<'_> {
     /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` if the user confirmed them.
-    pub(crate) fn judged(&self, pairs: &[Pair], how: Join, is_stated: bool) -> Result<Joined> {
+    pub(crate) fn judge_order(
+        &self,
+        pairs: &[RowPair],
+        how: Join,
+        is_stated: bool,
+    ) -> Result<JoinedReadings> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
         let (by_name, _) = join_names(how);
         let found = self.rows.agreement(pairs);
@@ -29,19 +34,22 @@ impl Pairing<'_> {
             }
             _ => String::new(),
         };
-        let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", counted(pairs.len()));
+        let note = format!(
+            "{joints} and {path} were joined {by_name}: {}{missed}",
+            count_configurations(pairs.len())
+        );
         warnings.extend(found.and_then(|_| self.wrong_pairs(pairs)));
         warnings.extend(self.without_partner(pairs));
         let entry = self.entry(how, pairs, found.as_ref().map(Agreement::missed_m));
-        let unmeasured = self.unmeasured(pairs);
-        Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
+        let unmeasured = self.unmeasured_rows(pairs);
+        Ok(JoinedReadings { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
     }
 
     /// Warns of pairs of one order without or with little evidence; refuses those that another order fits better.
     fn warn_of_order(
         &self,
         found: Option<Agreement>,
-        pairs: &[Pair],
+        pairs: &[RowPair],
         how: Join,
         is_stated: bool,
     ) -> Result<Vec<String>> {
@@ -51,13 +59,13 @@ impl Pairing<'_> {
         match found {
             Some(
                 Agreement::Other { missed_m, order, other_m } | Agreement::Alike { missed_m, order, other_m },
-            ) if !is_stated && joined::is_doubtful(self.robot, missed_m.min(other_m)) => {
+            ) if !is_stated && joined_rows::is_doubtful(self.robot, missed_m.min(other_m)) => {
                 return self.refuse(format!(
                     "found measurements that do not fit the joint readings: the nominal robot misses them by {} (median) if they are joined {by_name}, and by {} {}: {}",
                     mm(missed_m),
                     mm(other_m),
                     words(order),
-                    joined::reason(self.robot, &self.rows.session_of(pairs))
+                    joined_rows::reason(self.robot, &self.rows.session_of(pairs))
                 ));
             }
             Some(Agreement::Other { missed_m, order, other_m }) => {
@@ -80,7 +88,7 @@ impl Pairing<'_> {
                 return self.refuse(format!(
                     "found {}, with which nothing shows whether the rows belong together, expected more, names in both (a column `id`), or \
                      --join rows",
-                    counted(pairs.len())
+                    count_configurations(pairs.len())
                 ));
             }
             None => warnings.push(format!(
@@ -94,7 +102,7 @@ impl Pairing<'_> {
     /// Warns of pairs that another order fits as well; refuses them if the order is not stated.
     fn warn_of_alike(
         &self,
-        (missed_m, order, other_m): (f64, Order, f64),
+        (missed_m, order, other_m): (f64, RowOrder, f64),
         how: Join,
         is_stated: bool,
     ) -> Result<String> {
@@ -116,24 +124,24 @@ impl Pairing<'_> {
     }
 
     /// Warns of pairs that fit no better than by chance; refuses them if the order is not stated.
-    fn warn_of_chance(&self, missed_m: f64, pairs: &[Pair], how: Join, is_stated: bool) -> Result<String> {
+    fn warn_of_chance(&self, missed_m: f64, pairs: &[RowPair], how: Join, is_stated: bool) -> Result<String> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
         let (by_name, _) = join_names(how);
         let message = format!(
             "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, no less than by chance: {}",
             mm(missed_m),
-            joined::reason(self.robot, &self.rows.session_of(pairs))
+            joined_rows::reason(self.robot, &self.rows.session_of(pairs))
         );
         // The errors of a robot that moves little are small in any order.
-        if !is_stated || joined::is_doubtful(self.robot, missed_m) {
+        if !is_stated || joined_rows::is_doubtful(self.robot, missed_m) {
             return self.refuse(format!("found measurements that do not fit the joint readings: {message}"));
         }
         Ok(format!("{joints}, {path}: {message}"))
     }
 
     /// Refuses rows that fit each other's readings.
-    fn refuse_exchanged(&self, pairs: &[Pair]) -> Result<()> {
-        let exchanged = self.rows.exchanged(pairs);
+    fn refuse_exchanged(&self, pairs: &[RowPair]) -> Result<()> {
+        let exchanged = self.rows.find_exchanged_pairs(pairs);
         let Some((one, other)) = exchanged.first() else { return Ok(()) };
         let (Some(one), Some(other)) = (pairs.get(*one), pairs.get(*other)) else { return Ok(()) };
         let all: BTreeSet<usize> = exchanged.iter().filter_map(|it| Some(pairs.get(it.0)?.1)).collect();

@@ -4,12 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::join_entry::JoinEntry;
-use super::join_pairs::{Joined, JointRows};
+use super::join_pairs::{JoinedReadings, JointRows};
 use super::join_plan::{MotionByLine, ReadingsByLine};
 use super::join_words::{mm, several_lags};
 use crate::{Join, Lag};
-use poecal_fit::input_doubts::joined::{self, is_doubtful, reason};
-use poecal_fit::start::{AtLag, InMotion, JointStream, Motion, NoLag, motion_of_target, smoothed};
+use poecal_fit::input_doubts::joined_rows::{self, is_doubtful, reason};
+use poecal_fit::start::{
+    JointStream, LagFailure, LaggedMeasurements, MotionMeasurements, MotionRecording, motion_of_target,
+    smooth_times,
+};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -18,11 +21,11 @@ use poecal_numerics::error::{ErrorKind, Result};
 const SMOOTHER: f64 = 0.8;
 
 /// Result of a search with some stamps.
-type Found = std::result::Result<InMotion, NoLag>;
+type LagResult = std::result::Result<MotionMeasurements, LagFailure>;
 
 /// Times of the rows of both, as stamped or smoothed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Stamps {
+struct RowStamps {
     joints: bool,
     measured: bool,
 }
@@ -36,7 +39,7 @@ pub(crate) fn in_motion(
     (path, data, times): (&Path, &Dataset, &[f64]),
     robot: &Robot,
     lag: Option<Lag>,
-) -> Result<Joined> {
+) -> Result<JoinedReadings> {
     let stated = lag.map(|it| (it.lag_s, it.off_s));
     let refuse = |message: String| refuse_pair(joints, path, message);
     let Some((stamps, found)) = search(joints, (path, data, times), robot, stated)? else {
@@ -45,9 +48,9 @@ pub(crate) fn in_motion(
     let near = if lag.is_some() { " near the stated one" } else { "" };
     let at_rest = |lag_s: f64| {
         let stream = JointStream::new(&joints.times, &joints.readings, joints.turns.len())?;
-        Motion::new(robot, &stream, data, times).ok()?.at_rest(lag_s)
+        MotionRecording::new(robot, &stream, data, times).ok()?.at_rest(lag_s)
     };
-    let unfit = |best: &AtLag, words: &str| {
+    let unfit = |best: &LaggedMeasurements, words: &str| {
         let reason = at_rest(best.lag_s).map_or_else(String::new, |it| format!(": {}", reason(robot, &it)));
         refuse(format!(
             "found measurements that fit the joint readings at no lag of the clocks{near}{words}, best {:.3} s ({}), expected recordings of the same \
@@ -59,14 +62,14 @@ pub(crate) fn in_motion(
     match found {
         Ok(found) => {
             let warning = at_rest(found.clock.lag_s).map(|rows| {
-                joined::warning(
+                joined_rows::warning(
                     robot,
                     found.missed_m,
                     || rows,
                     &format!("at a lag of {:.3} s", found.clock.lag_s),
                 )
             });
-            let mut joined = joined(joints, (path, data, times), robot, (stamps, &found));
+            let mut joined = join_motion(joints, (path, data, times), robot, (stamps, &found));
             match warning.transpose() {
                 Ok(warning) => {
                     let files = format!("{}, {}", joints.path.display(), path.display());
@@ -76,18 +79,18 @@ pub(crate) fn in_motion(
                 Err(message) => refuse(message),
             }
         }
-        Err(NoLag::NoMotion) => refuse(format!(
+        Err(LagFailure::NoMotion) => refuse(format!(
             "found no lag of the clocks{near} at which both streams move together for 5 s or longer, expected recordings of the same motion"
         )),
-        Err(NoLag::Alike(all)) => match all.first() {
+        Err(LagFailure::Alike(all)) => match all.first() {
             Some(best) if is_doubtful(robot, best.missed_m) => unfit(best, ""),
             best => {
-                let words = |it: &AtLag| format!("{:.3} s ({})", it.lag_s, mm(it.missed_m));
+                let words = |it: &LaggedMeasurements| format!("{:.3} s ({})", it.lag_s, mm(it.missed_m));
                 let listed: Vec<String> = all.iter().map(words).collect();
                 refuse(several_lags(&listed, best.map_or(0.0, |it| it.lag_s)))
             }
         },
-        Err(NoLag::None(best)) => unfit(&best, " better than by chance"),
+        Err(LagFailure::None(best)) => unfit(&best, " better than by chance"),
     }
 }
 
@@ -103,11 +106,11 @@ fn search(
     (path, data, times): (&Path, &Dataset, &[f64]),
     robot: &Robot,
     stated: Option<(f64, f64)>,
-) -> Result<Option<(Stamps, Found)>> {
-    let smooth = (smoothed(&joints.times), smoothed(times));
-    let mut found: Vec<(Stamps, Found)> = Vec::new();
+) -> Result<Option<(RowStamps, LagResult)>> {
+    let smooth = (smooth_times(&joints.times), smooth_times(times));
+    let mut found: Vec<(RowStamps, LagResult)> = Vec::new();
     for stamps in [(false, false), (true, false), (false, true), (true, true)] {
-        let stamps = Stamps { joints: stamps.0, measured: stamps.1 };
+        let stamps = RowStamps { joints: stamps.0, measured: stamps.1 };
         let own = if stamps.joints { smooth.0.as_ref() } else { Some(&joints.times) };
         let seen = if stamps.measured { smooth.1.as_deref() } else { Some(times) };
         let (Some(own), Some(seen)) = (own, seen) else { continue };
@@ -119,36 +122,36 @@ fn search(
                     .to_owned(),
             );
         };
-        let motion = Motion::new(robot, &stream, data, seen).map_err(|error| error.in_file(path))?;
-        found.push((stamps, motion.found(stated)));
+        let motion = MotionRecording::new(robot, &stream, data, seen).map_err(|error| error.in_file(path))?;
+        found.push((stamps, motion.find_lag(stated)));
     }
-    Ok(chosen(found))
+    Ok(choose_stamps(found))
 }
 
 /// The result with original stamps, or with smoothed ones if these fit evidently better.
-fn chosen(mut found: Vec<(Stamps, Found)>) -> Option<(Stamps, Found)> {
+fn choose_stamps(mut found: Vec<(RowStamps, LagResult)>) -> Option<(RowStamps, LagResult)> {
     // The original stamps come first.
     let usual_m = match found.first()? {
         (_, Ok(it)) => it.fitted_m,
         (_, Err(_)) => f64::INFINITY,
     };
     let alike_m = match found.first()? {
-        (_, Err(NoLag::Alike(all))) => all.first().map_or(f64::INFINITY, |it| it.missed_m),
+        (_, Err(LagFailure::Alike(all))) => all.first().map_or(f64::INFINITY, |it| it.missed_m),
         _ => f64::INFINITY,
     };
-    let is_better = |it: &(Stamps, Found)| {
+    let is_better = |it: &(RowStamps, LagResult)| {
         it.1.as_ref().is_ok_and(|it| it.fitted_m < SMOOTHER * usual_m && it.missed_m < SMOOTHER * alike_m)
     };
     let at = found.iter().position(is_better).unwrap_or_default();
     Some(found.swap_remove(at))
 }
 
-fn joined(
+fn join_motion(
     joints: &JointRows,
     (path, data, times): (&Path, &Dataset, &[f64]),
     robot: &Robot,
-    (stamps, found): (Stamps, &InMotion),
-) -> Joined {
+    (stamps, found): (RowStamps, &MotionMeasurements),
+) -> JoinedReadings {
     let lines: BTreeSet<u32> = data.observations.iter().map(|it| it.source.line).collect();
     let entry = JoinEntry {
         joints: joints.path.display().to_string(),
@@ -198,7 +201,7 @@ fn joined(
         ));
     }
     readings.moving = Some(MotionByLine { rows, clock });
-    Joined { entry, readings, unmeasured: Vec::new(), notes, warnings }
+    JoinedReadings { entry, readings, unmeasured: Vec::new(), notes, warnings }
 }
 
 /// Smallest scatter of single stamps that is reported, seconds.

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::join_pairs::{Joined, Pairing, SOME_WRONG};
+use super::join_pairs::{JoinedReadings, Pairing, SOME_WRONG};
 use super::join_words::mm;
-use super::no_stands::NoStands;
+use super::missing_intervals::MissingIntervals;
 use crate::Join;
-use poecal_fit::input_doubts::joined;
-use poecal_fit::start::{Agreement, Aligned, Pair};
+use poecal_fit::input_doubts::joined_rows;
+use poecal_fit::start::{Agreement, AlignedPairs, RowPair};
 use poecal_numerics::error::Result;
 
 /// Ratio of the numbers of rows beyond which the longer one is a recording, not a list.
@@ -17,10 +17,10 @@ const LEAST_WRONG_M: f64 = 1e-3;
 
 impl Pairing<'_> {
     /// Lists of unequal length, by the errors of the nominal robot.
-    pub(crate) fn by_alignment(&self) -> Result<Joined> {
+    pub(crate) fn by_alignment(&self) -> Result<JoinedReadings> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         if joints > LONGER * shots
-            && let NoStands::Recorded { why, .. } = &self.joints.no_stands
+            && let MissingIntervals::Recorded { why, .. } = &self.joints.no_stands
         {
             return self.refuse(format!(
                 "found {shots} measured configurations, and {joints} rows of joint readings that follow each other as in a recording, with {why}, \
@@ -28,18 +28,18 @@ impl Pairing<'_> {
             ));
         }
         if shots > LONGER * joints
-            && let Some(NoStands::Recorded { why, .. }) = self.no_stands
+            && let Some(MissingIntervals::Recorded { why, .. }) = self.no_stands
         {
             return self.refuse(format!(
                 "found {joints} rows of joint readings, and {shots} measurements that follow each other as in a recording, with {why}, expected the \
                  time of each row in seconds, by which the stands of the robot are found"
             ));
         }
-        self.aligned(self.rows.aligned())
+        self.join_aligned(self.rows.align_lists())
     }
 
     /// Joins such lists by the alignment that was found.
-    pub(crate) fn aligned(&self, found: Option<Aligned>) -> Result<Joined> {
+    pub(crate) fn join_aligned(&self, found: Option<AlignedPairs>) -> Result<JoinedReadings> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         let counts = format!("found {shots} measured configurations and {joints} rows of joint readings");
         let Some(found) = found else {
@@ -47,7 +47,7 @@ impl Pairing<'_> {
                 "{counts}, expected as many, or names in both (a column `id`): nothing shows which belong together"
             ));
         };
-        let Aligned { pairs, repeated, unread, unclear, missed_m, .. } = &found;
+        let AlignedPairs { pairs, repeated, unread, unclear, missed_m, .. } = &found;
         if 2 * pairs.len() < shots.min(joints) {
             return self.refuse(format!(
                 "{counts}, expected as many, or names in both (a column `id`): only {} of them fit the nominal robot in this order",
@@ -63,7 +63,7 @@ impl Pairing<'_> {
             self.refuse_doubtful(*missed_m, pairs, "in their order")?.into_iter().collect();
         let (own, path) = (self.joints.path.display(), self.path.display());
         if !repeated.is_empty() {
-            warnings.push(self.repeated(repeated));
+            warnings.push(self.describe_repeated(repeated));
         }
         if !unread.is_empty() {
             warnings.push(self.left_out(unread, ["fits", "fit"], "no joint readings"));
@@ -80,16 +80,21 @@ impl Pairing<'_> {
         );
         let entry = self.entry(Join::Rows, pairs, Some(*missed_m));
         let unmeasured = found.unmeasured.clone();
-        Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
+        Ok(JoinedReadings { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
     }
 
     /// The warning of an error that is larger than usual and has an explanation.
     ///
     /// # Errors
     /// The error is larger than that of any robot, and has no explanation.
-    pub(crate) fn refuse_doubtful(&self, missed_m: f64, pairs: &[Pair], how: &str) -> Result<Option<String>> {
+    pub(crate) fn refuse_doubtful(
+        &self,
+        missed_m: f64,
+        pairs: &[RowPair],
+        how: &str,
+    ) -> Result<Option<String>> {
         let joined = || self.rows.session_of(pairs);
-        match joined::warning(self.robot, missed_m, joined, how) {
+        match joined_rows::warning(self.robot, missed_m, joined, how) {
             Ok(warning) => {
                 let files = format!("{}, {}", self.joints.path.display(), self.path.display());
                 Ok(warning.map(|it| format!("{files}: {it}")))
@@ -99,13 +104,13 @@ impl Pairing<'_> {
     }
 
     /// The warning of pairs that fit far worse than the others, if there are a few.
-    pub(crate) fn wrong_pairs(&self, pairs: &[Pair]) -> Option<String> {
-        let (mut wrong, usual_m) = self.rows.wrong(pairs);
+    pub(crate) fn wrong_pairs(&self, pairs: &[RowPair]) -> Option<String> {
+        let (mut wrong, usual_m) = self.rows.find_wrong_pairs(pairs);
         wrong.retain(|it| it.1 > LEAST_WRONG_M);
         if wrong.is_empty() || wrong.len() as f64 > SOME_WRONG * pairs.len() as f64 {
             return None;
         }
-        let own: Vec<Pair> = wrong.iter().filter_map(|it| pairs.get(it.0)).copied().collect();
+        let own: Vec<RowPair> = wrong.iter().filter_map(|it| pairs.get(it.0)).copied().collect();
         let farthest = wrong.iter().map(|it| it.1).fold(0.0, f64::max);
         let shots: Vec<usize> = own.iter().map(|it| it.1).collect();
         let joints: Vec<usize> = own.iter().map(|it| it.0).collect();
@@ -123,18 +128,18 @@ impl Pairing<'_> {
     }
 
     /// Rows of joint readings without a measurement.
-    pub(crate) fn unmeasured(&self, pairs: &[Pair]) -> Vec<usize> {
+    pub(crate) fn unmeasured_rows(&self, pairs: &[RowPair]) -> Vec<usize> {
         let joints: BTreeSet<usize> = pairs.iter().map(|it| it.0).collect();
         (0..self.rows.joint_rows()).filter(|it| !joints.contains(it)).collect()
     }
 
     /// Rows of joint readings at which a target was measured more than once.
-    pub(crate) fn repeated_rows(&self, pairs: &[Pair]) -> Vec<usize> {
+    pub(crate) fn repeated_rows(&self, pairs: &[RowPair]) -> Vec<usize> {
         let (mut first, mut repeated) = (BTreeMap::new(), BTreeSet::new());
         for (joint, shot) in pairs {
             for &row in self.rows.shots().get(*shot).into_iter().flatten() {
                 let Some(it) = self.data.observations.get(row as usize) else { continue };
-                let what = it.measurement.function().leading().name();
+                let what = it.measurement.function().leading_quantity().name();
                 if first.entry((*joint, it.station, it.target, what)).or_insert(*shot) != shot {
                     repeated.insert(*joint);
                 }
@@ -144,13 +149,13 @@ impl Pairing<'_> {
     }
 
     /// Messages on joint readings with several measurements, and on measurements without partner.
-    pub(crate) fn without_partner(&self, pairs: &[Pair]) -> Vec<String> {
+    pub(crate) fn without_partner(&self, pairs: &[RowPair]) -> Vec<String> {
         let repeated = self.repeated_rows(pairs);
         let shots: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
         let unread = (0..self.rows.shots().len()).filter(|it| !shots.contains(it)).collect::<Vec<_>>();
         let mut said = Vec::new();
         if !repeated.is_empty() {
-            said.push(self.repeated(&repeated));
+            said.push(self.describe_repeated(&repeated));
         }
         if !unread.is_empty() {
             said.push(self.left_out(&unread, ["has", "have"], "no joint readings"));
@@ -158,7 +163,7 @@ impl Pairing<'_> {
         said
     }
 
-    fn repeated(&self, joints: &[usize]) -> String {
+    fn describe_repeated(&self, joints: &[usize]) -> String {
         format!("{}: more than once was measured at {}", self.joints.path.display(), self.joint_lines(joints))
     }
 

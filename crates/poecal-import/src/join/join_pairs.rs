@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::join_entry::{JoinEntry, MOST_ALONE, MOST_PAIRS, RowEntry};
 use super::join_plan::ReadingsByLine;
-use super::join_words::{numbered, numbered_as};
-use super::no_stands::NoStands;
-use crate::table::picture_names::Partners;
+use super::join_words::{number_lines, numbered_as};
+use super::missing_intervals::MissingIntervals;
+use crate::table::picture_names::PicturePartners;
 use crate::{Join, Lag};
-use poecal_fit::start::{JointStream, Pair, Sampled, Span, Unpaired};
+use poecal_fit::start::{JointStream, ResampledStream, RowPair, TimeInterval, UnpairedRows};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Controller, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -35,13 +35,13 @@ pub(crate) struct JointRows {
     /// The time of each row, seconds; NaN if it has none.
     pub(crate) times: Vec<f64>,
     /// Beginning and end of each row, seconds, if the rows are static intervals of a stream.
-    pub(crate) spans: Option<Vec<Span>>,
+    pub(crate) spans: Option<Vec<TimeInterval>>,
     /// The stream of which they are static intervals.
     pub(crate) stream: Option<JointStream>,
     /// Reason why they are no stream.
-    pub(crate) no_stands: NoStands,
+    pub(crate) no_stands: MissingIntervals,
     /// Readings of that stream at equidistant times.
-    pub(crate) sampled: Option<Sampled>,
+    pub(crate) sampled: Option<ResampledStream>,
     pub(crate) controller: Option<Controller>,
 }
 
@@ -58,9 +58,9 @@ impl JointRows {
         let lines: Vec<String> = rows.iter().filter_map(line).collect();
         match (&self.spans, lines.len()) {
             (None, _) if self.is_sheet => numbered_as("row", &lines),
-            (None, _) => numbered(&lines),
-            (Some(_), 1) => format!("the stand that begins at {}", numbered(&lines)),
-            (Some(_), _) => format!("the stands that begin at {}", numbered(&lines)),
+            (None, _) => number_lines(&lines),
+            (Some(_), 1) => format!("the stand that begins at {}", number_lines(&lines)),
+            (Some(_), _) => format!("the stands that begin at {}", number_lines(&lines)),
         }
     }
 
@@ -87,20 +87,20 @@ pub(crate) struct Pairing<'a> {
     pub(crate) joints: &'a JointRows,
     pub(crate) path: &'a Path,
     pub(crate) data: &'a Dataset,
-    pub(crate) rows: Unpaired<'a>,
+    pub(crate) rows: UnpairedRows<'a>,
     pub(crate) robot: &'a Robot,
     /// Beginning and end of each measured configuration, seconds, if known.
-    pub(crate) spans: Option<&'a [Span]>,
+    pub(crate) spans: Option<&'a [TimeInterval]>,
     /// The stated lag and its largest error, seconds.
     pub(crate) lag: Option<Lag>,
     /// Reason why the measurements are no stream; absent if they are static intervals of one.
-    pub(crate) no_stands: Option<&'a NoStands>,
+    pub(crate) no_stands: Option<&'a MissingIntervals>,
     /// The stream of measurements whose static intervals these are, with its times, seconds.
     pub(crate) stream: Option<(&'a Dataset, &'a [f64])>,
 }
 
 /// Readings by line, and the messages on them.
-pub(crate) struct Joined {
+pub(crate) struct JoinedReadings {
     /// Record of the join.
     pub(crate) entry: JoinEntry,
     pub(crate) readings: ReadingsByLine,
@@ -118,17 +118,17 @@ impl<'a> Pairing<'a> {
         data: &'a Dataset,
         robot: &'a Robot,
     ) -> Self {
-        let rows = Unpaired::new(robot, &joints.readings, data);
+        let rows = UnpairedRows::new(robot, &joints.readings, data);
         Pairing { joints, path, data, rows, robot, spans: None, lag: None, no_stands: None, stream: None }
     }
 
     /// The readings of each line, by names, order or time.
-    pub(crate) fn found(&self, join: Option<Join>) -> Result<Joined> {
+    pub(crate) fn find_readings(&self, join: Option<Join>) -> Result<JoinedReadings> {
         let by_names = if matches!(join, Some(Join::Rows | Join::Time)) { None } else { self.by_names() };
         let clocks = self.joints.spans.as_deref().zip(self.spans);
         match (join, by_names) {
             (Some(Join::Time), _) | (None, None) if let Some((joints, shots)) = clocks => {
-                let lags = self.rows.lagged(joints, shots, self.lag.map(|it| (it.lag_s, it.off_s)));
+                let lags = self.rows.find_lags(joints, shots, self.lag.map(|it| (it.lag_s, it.off_s)));
                 let found = self.by_lag(&lags, (joints.len(), shots.len()));
                 // Without static intervals at the same times, their order may suffice.
                 let is_open = join.is_none() && self.lag.is_none() && lags.is_empty();
@@ -141,7 +141,7 @@ impl<'a> Pairing<'a> {
                 "found no name that is in both, expected a column `id` in each, with the same names, or names that end in the same number"
                     .to_owned(),
             ),
-            (_, Some(pairs)) => match self.judged(&pairs, Join::Name, join.is_some()) {
+            (_, Some(pairs)) => match self.judge_order(&pairs, Join::Name, join.is_some()) {
                 // The numbers may count only the points.
                 Err(error) if join.is_none() => match self.by_rows(false) {
                     Ok(mut joined) => {
@@ -161,22 +161,22 @@ impl<'a> Pairing<'a> {
         }
     }
 
-    fn by_rows(&self, is_stated: bool) -> Result<Joined> {
+    fn by_rows(&self, is_stated: bool) -> Result<JoinedReadings> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         if joints != shots {
             return self.by_alignment();
         }
-        let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
+        let pairs: Vec<RowPair> = (0..joints).map(|row| (row, row)).collect();
         // Equal numbers of rows may hide that one row was lost and another one taken twice.
-        let wrong = self.rows.wrong(&pairs).0.len();
+        let wrong = self.rows.find_wrong_pairs(&pairs).0.len();
         if wrong >= FEW_WRONG
             && let Some(found) =
-                self.rows.aligned().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
-            && self.rows.wrong(&found.pairs).0.len() < wrong
+                self.rows.align_lists().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
+            && self.rows.find_wrong_pairs(&found.pairs).0.len() < wrong
         {
-            return self.aligned(Some(found));
+            return self.join_aligned(Some(found));
         }
-        self.judged(&pairs, Join::Rows, is_stated)
+        self.judge_order(&pairs, Join::Rows, is_stated)
     }
 
     /// The error of files that cannot be joined.
@@ -186,7 +186,7 @@ impl<'a> Pairing<'a> {
     }
 
     /// Pairs of the same names, or of names that end in the same number.
-    fn by_names(&self) -> Option<Vec<Pair>> {
+    fn by_names(&self) -> Option<Vec<RowPair>> {
         let name_of = |shot: &Vec<u32>| self.data.ids.get(*shot.first()? as usize);
         let seen: Vec<Option<&String>> = self.rows.shots().iter().map(name_of).collect();
         let own: BTreeSet<&String> = seen.iter().flatten().copied().filter(|it| !it.is_empty()).collect();
@@ -195,19 +195,19 @@ impl<'a> Pairing<'a> {
         if others.len() != self.joints.ids.iter().filter(|it| !it.is_empty()).count() {
             return None;
         }
-        let partners = Partners::new(&own, others);
+        let partners = PicturePartners::new(&own, others);
         let row_of = |name: &String| {
             let other = partners.partner(name)?;
             self.joints.ids.iter().position(|it| it == other)
         };
-        let pairs: Vec<Pair> = (seen.iter().enumerate())
+        let pairs: Vec<RowPair> = (seen.iter().enumerate())
             .filter_map(|(shot, name)| Some((row_of(name.as_ref()?)?, shot)))
             .collect();
         (2 * pairs.len() >= seen.len() && !pairs.is_empty()).then_some(pairs)
     }
 
     /// The record of the pairs.
-    pub(crate) fn entry(&self, join: Join, pairs: &[Pair], missed_m: Option<f64>) -> JoinEntry {
+    pub(crate) fn entry(&self, join: Join, pairs: &[RowPair], missed_m: Option<f64>) -> JoinEntry {
         let paired: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
         let of_joints = |rows: Vec<usize>| {
             let entry = |at: usize| Some(RowEntry { number: at + 1, line: *self.joints.lines.get(at)? });
@@ -226,7 +226,7 @@ impl<'a> Pairing<'a> {
             missed_mm: missed_m.map(|it| 1e3 * it),
             lag_s: None,
             pairs: pairs.iter().take(MOST_PAIRS).map(|it| [it.0 + 1, it.1 + 1]).collect(),
-            unmeasured: of_joints(self.unmeasured(pairs)),
+            unmeasured: of_joints(self.unmeasured_rows(pairs)),
             repeated: of_joints(self.repeated_rows(pairs)),
             unread: of_shots.filter_map(entry_of).take(MOST_ALONE).collect(),
             robot_motion: robot_motion
@@ -235,7 +235,7 @@ impl<'a> Pairing<'a> {
         }
     }
 
-    pub(crate) fn readings(&self, pairs: &[Pair]) -> ReadingsByLine {
+    pub(crate) fn readings(&self, pairs: &[RowPair]) -> ReadingsByLine {
         let mut found =
             ReadingsByLine { controller: self.joints.controller.clone(), ..ReadingsByLine::default() };
         for (joint, shot) in pairs {
@@ -260,6 +260,6 @@ impl<'a> Pairing<'a> {
 
     pub(crate) fn shot_lines(&self, shots: &[usize]) -> String {
         let line = |shot: &usize| self.shot_line(*shot).map(|it| it.to_string());
-        numbered(&shots.iter().filter_map(line).collect::<Vec<_>>())
+        number_lines(&shots.iter().filter_map(line).collect::<Vec<_>>())
     }
 }

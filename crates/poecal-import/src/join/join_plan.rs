@@ -3,24 +3,24 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::no_file_for::{BODIES, unused};
-use crate::instruments::{MEASURED, Made, Opened, Opening, RECORDINGS, Recording};
+use super::missing_forms::{BODIES, unused_option_error};
+use crate::instruments::{MEASURED, MadeTable, OpenedFile, OpeningContext, RECORDINGS, Recording};
 use crate::messages::are_messages;
 use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
-use crate::table::Table;
+use crate::table::FileTable;
 use crate::table::column_spec::ColumnSpec;
 use crate::table::configurations::is_folder;
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
-use crate::table::text::Blocks;
-use crate::{Frames, ReadOptions};
+use crate::table::text::LineBlocks;
+use crate::{FrameGrouping, ReadOptions};
 use poecal_model::measurement::{Clock, Measurement};
 use poecal_model::robot::{Controller, ReadingKind, Robot};
-use poecal_numerics::error::{Error, ErrorKind, Result, shown};
+use poecal_numerics::error::{Error, ErrorKind, Result, shorten_name};
 
 /// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum FileRole {
     /// Joint readings, no measurements.
     Joints,
     /// Measurements without joint readings; `is_named` if it names its targets.
@@ -50,33 +50,33 @@ pub(crate) struct MotionByLine {
 }
 
 /// Files of which some hold the joint readings of others.
-pub(crate) struct Plan<'p> {
-    pub(crate) files: Vec<Planned<'p>>,
+pub(crate) struct JoinPlan<'p> {
+    pub(crate) files: Vec<PlannedFile<'p>>,
 }
 
 /// A file and its content.
-pub(crate) struct Planned<'p> {
+pub(crate) struct PlannedFile<'p> {
     pub(crate) path: &'p Path,
-    pub(crate) part: Part,
+    pub(crate) part: FileRole,
     /// Mapping by which a file without readings is read.
     pub(crate) map: ColumnMap,
     /// The table of a file in another form.
-    table: Option<Made>,
+    table: Option<MadeTable>,
 }
 
-impl<'p> Planned<'p> {
+impl<'p> PlannedFile<'p> {
     /// The tables of two sets of coordinates, of a file that has them.
-    pub(crate) fn sets(&self) -> Option<[Made; 2]> {
+    pub(crate) fn sets(&self) -> Option<[MadeTable; 2]> {
         self.table.as_ref()?.sets()
     }
 
     /// Replaces its table.
-    pub(crate) fn with_table(&mut self, table: Made) {
+    pub(crate) fn with_table(&mut self, table: MadeTable) {
         self.table = Some(table);
     }
 
     /// Its blocks.
-    pub(crate) fn blocks(&self, opening: Opening<'_>, expected: &'p str) -> Result<Blocks<'p>> {
+    pub(crate) fn blocks(&self, opening: OpeningContext<'_>, expected: &'p str) -> Result<LineBlocks<'p>> {
         match &self.table {
             Some(table) => Ok(table.blocks(self.path, expected)),
             None => opening.blocks(self.path, expected),
@@ -84,7 +84,7 @@ impl<'p> Planned<'p> {
     }
 }
 
-impl<'p> Plan<'p> {
+impl<'p> JoinPlan<'p> {
     /// The plan of files, if there are some to join.
     pub(crate) fn from_paths(
         paths: &[&'p Path],
@@ -92,7 +92,7 @@ impl<'p> Plan<'p> {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Result<Option<Self>> {
-        let opening = Opening { robot, options };
+        let opening = OpeningContext { robot, options };
         let recordings: Vec<Option<Recording>> =
             paths.iter().map(|path| opening.recording(path)).collect::<Result<_>>()?;
         let first = paths.iter().zip(&recordings).find_map(|(path, it)| Some((*path, it.as_ref()?)));
@@ -100,21 +100,21 @@ impl<'p> Plan<'p> {
             return Ok(None);
         }
         let (files, neither) = sort_parts(paths.iter().copied().zip(&recordings), opening, map)?;
-        let measured = files.iter().filter(|it| matches!(it.1, Part::Measured { .. })).count();
-        let joints = files.iter().filter(|it| it.1 == Part::Joints).count();
+        let measured = files.iter().filter(|it| matches!(it.1, FileRole::Measured { .. })).count();
+        let joints = files.iter().filter(|it| it.1 == FileRole::Joints).count();
         if let Some((path, recording)) = first {
             refuse_other_topics(path, &recordings, options)?;
             let has_bodies = recordings.iter().flatten().any(|it| it.names_bodies)
                 || files.iter().any(|it| it.2.as_ref().is_some_and(|it| RECORDINGS.contains(&it.title)));
             if options.body.is_some() && !has_bodies {
-                return Err(unused("--body", BODIES));
+                return Err(unused_option_error("--body", BODIES));
             }
             if joints == 0 || measured == 0 {
                 return Err(recording.error(path, joints == 0));
             }
         }
         // If another file has joint readings or measurements, the first file without either is reported.
-        if let Some(Neither { as_joints, as_measured }) = neither.into_iter().next()
+        if let Some(UnusableFile { as_joints, as_measured }) = neither.into_iter().next()
             && joints + measured > 0
         {
             return Err(if joints == 0 { as_joints } else { as_measured });
@@ -125,21 +125,21 @@ impl<'p> Plan<'p> {
         let several = joints == 1 && measured > 1;
         // Files with different frames are from several stations of the instrument.
         let frames: BTreeSet<&str> = (files.iter())
-            .filter(|it| several && matches!(it.1, Part::Measured { .. }))
+            .filter(|it| several && matches!(it.1, FileRole::Measured { .. }))
             .filter_map(|it| it.2.as_ref()?.frame.as_deref())
             .collect();
-        let is_by_frames = frames.len() > 1 && options.frames == Frames::Common;
-        let planned = |(path, part, table): FilePart<'p>| {
+        let is_by_frames = frames.len() > 1 && options.frames == FrameGrouping::Common;
+        let planned = |(path, part, table): FileWithTable<'p>| {
             let mut map = without_joints(map, robot);
             // Several files that were measured at the same configurations are of several targets, or of several instruments.
-            let is_unnamed = part == (Part::Measured { is_named: false });
-            if several && is_unnamed && !is_by_frames && options.frames == Frames::Common {
+            let is_unnamed = part == (FileRole::Measured { is_named: false });
+            if several && is_unnamed && !is_by_frames && options.frames == FrameGrouping::Common {
                 map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
             }
-            let table = if is_by_frames { table.map(Made::by_frame) } else { table };
-            Planned { path, part, map, table }
+            let table = if is_by_frames { table.map(MadeTable::by_frame) } else { table };
+            PlannedFile { path, part, map, table }
         };
-        Ok(Some(Plan { files: files.into_iter().map(planned).collect() }))
+        Ok(Some(JoinPlan { files: files.into_iter().map(planned).collect() }))
     }
 }
 
@@ -153,7 +153,7 @@ fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &
         }
         let contents: Vec<&str> = recordings.iter().flatten().map(|it| it.contents.as_str()).collect();
         let contents = contents.join(", ");
-        let name = shown(name);
+        let name = shorten_name(name);
         let message = match found {
             None => format!("found no topic `{name}`, expected one of {contents}"),
             Some(_) => format!(
@@ -166,27 +166,30 @@ fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &
 }
 
 /// Content of a file, with its table if it is in another form.
-pub(crate) struct Found {
-    pub(crate) part: Part,
-    table: Option<Made>,
+pub(crate) struct FileFinding {
+    pub(crate) part: FileRole,
+    table: Option<MadeTable>,
     /// Reason why it has neither joint readings nor measurements.
-    why: Option<Neither>,
+    why: Option<UnusableFile>,
 }
 
 /// Reasons why a file has no joint readings, and no measurements.
-struct Neither {
+struct UnusableFile {
     as_joints: Error,
     as_measured: Error,
 }
 
-impl Found {
-    fn whole() -> Self {
-        Found { part: Part::Whole, table: None, why: None }
+impl FileFinding {
+    fn whole_file() -> Self {
+        FileFinding { part: FileRole::Whole, table: None, why: None }
     }
 
     /// The reasons for a file that cannot be read.
-    fn unreadable(error: &Error) -> Self {
-        Found { why: Some(Neither { as_joints: error.clone(), as_measured: error.clone() }), ..Self::whole() }
+    fn from_read_error(error: &Error) -> Self {
+        FileFinding {
+            why: Some(UnusableFile { as_joints: error.clone(), as_measured: error.clone() }),
+            ..Self::whole_file()
+        }
     }
 }
 
@@ -195,52 +198,54 @@ impl Found {
 ///
 /// # Errors
 /// Those of a file in another form that cannot be one of these.
-pub(crate) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<Found> {
+pub(crate) fn part(path: &Path, opening: OpeningContext<'_>, map: &ColumnMap) -> Result<FileFinding> {
     if is_folder(path) {
-        let error = opening.opened(path, MEASURED).err();
-        return Ok(error.map_or_else(Found::whole, |it| Found::unreadable(&it)));
+        let error = opening.open_file(path, MEASURED).err();
+        return Ok(error.map_or_else(FileFinding::whole_file, |it| FileFinding::from_read_error(&it)));
     }
-    let (blocks, table) = match opening.opened(path, MEASURED)? {
-        Opened::Own(blocks) => (*blocks, None),
-        Opened::Made(table) => (table.blocks(path, MEASURED), Some(*table)),
+    let (blocks, table) = match opening.open_file(path, MEASURED)? {
+        OpenedFile::Own(blocks) => (*blocks, None),
+        OpenedFile::Made(table) => (table.blocks(path, MEASURED), Some(*table)),
     };
     let found = part_of(path, blocks, opening, map);
-    Ok(Found { table, ..found.unwrap_or_else(|error| Found::unreadable(&error)) })
+    Ok(FileFinding { table, ..found.unwrap_or_else(|error| FileFinding::from_read_error(&error)) })
 }
 
 fn part_of<'p>(
     path: &'p Path,
-    mut blocks: Blocks<'p>,
-    opening: Opening<'_>,
+    mut blocks: LineBlocks<'p>,
+    opening: OpeningContext<'_>,
     map: &ColumnMap,
-) -> Result<Found> {
-    let Opening { robot, options } = opening;
+) -> Result<FileFinding> {
+    let OpeningContext { robot, options } = opening;
     blocks.begin()?;
     if are_messages(path, blocks.text())? {
-        return Ok(Found::whole());
+        return Ok(FileFinding::whole_file());
     }
-    let table = Table::open(path, blocks, map)?;
+    let table = FileTable::open(path, blocks, map)?;
     let names = robot.reading_names();
     if are_corners(&table.header, &names, map)?
         || !options.cameras.is_empty() && are_readings_of_pictures(&table.header, &names, map)
     {
-        return Ok(Found::whole());
+        return Ok(FileFinding::whole_file());
     }
     let joints = ColumnLayout::joints(&table.header, robot, options, map);
     let measured = ColumnLayout::new(&table.header, robot, options, &without_joints(map, robot));
     let (part, why) = match (joints, measured) {
-        (Ok(_), Err(_)) => (Part::Joints, None),
+        (Ok(_), Err(_)) => (FileRole::Joints, None),
         (Err(_), Ok(layout)) => {
             let is_named =
                 layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
-            (Part::Measured { is_named }, None)
+            (FileRole::Measured { is_named }, None)
         }
-        (Err(as_joints), Err(as_measured)) => (Part::Whole, Some(Neither { as_joints, as_measured })),
+        (Err(as_joints), Err(as_measured)) => {
+            (FileRole::Whole, Some(UnusableFile { as_joints, as_measured }))
+        }
         // Columns by number are those of the file without joint readings.
-        (Ok(_), Ok(_)) if !map.names_joints() && map.measured_numbers().is_some() => (Part::Joints, None),
-        (Ok(_), Ok(_)) => (Part::Whole, None),
+        (Ok(_), Ok(_)) if !map.names_joints() && map.measured_numbers().is_some() => (FileRole::Joints, None),
+        (Ok(_), Ok(_)) => (FileRole::Whole, None),
     };
-    Ok(Found { part, table: None, why })
+    Ok(FileFinding { part, table: None, why })
 }
 
 /// A mapping for a file without readings: those of joints are numbers without meaning.
@@ -254,26 +259,26 @@ fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
 }
 
 /// A file with its content, and its table if it is in another form.
-type FilePart<'p> = (&'p Path, Part, Option<Made>);
+type FileWithTable<'p> = (&'p Path, FileRole, Option<MadeTable>);
 
 /// Sorts files by content, with the reasons why some have neither joint readings nor measurements.
 fn sort_parts<'p, 'r>(
     paths: impl Iterator<Item = (&'p Path, &'r Option<Recording>)>,
-    opening: Opening<'_>,
+    opening: OpeningContext<'_>,
     map: &ColumnMap,
-) -> Result<(Vec<FilePart<'p>>, Vec<Neither>)> {
-    let mut files: Vec<FilePart<'p>> = Vec::new();
+) -> Result<(Vec<FileWithTable<'p>>, Vec<UnusableFile>)> {
+    let mut files: Vec<FileWithTable<'p>> = Vec::new();
     let mut neither = Vec::new();
     for (path, recording) in paths {
         let Some(recording) = recording else {
-            let Found { part, table, why } = part(path, opening, map)?;
+            let FileFinding { part, table, why } = part(path, opening, map)?;
             neither.extend(why);
             files.push((path, part, table));
             continue;
         };
         for (is_joints, table) in recording.tables() {
             let is_named = map.target_name.is_some();
-            let part = if is_joints { Part::Joints } else { Part::Measured { is_named } };
+            let part = if is_joints { FileRole::Joints } else { FileRole::Measured { is_named } };
             files.push((path, part, Some(table)));
         }
     }

@@ -1,7 +1,7 @@
 //! Messages on pairs.
 
-use poecal_fit::start::Order;
-pub(crate) use poecal_fit::start::{mm, numbered, numbered_as};
+use poecal_fit::start::RowOrder;
+pub(crate) use poecal_fit::start::{mm, number_lines, numbered_as};
 use poecal_numerics::error::first_few;
 
 /// Message on lags at which measurements fit equally well, the best first.
@@ -13,7 +13,7 @@ pub(crate) fn several_lags(listed: &[String], best_s: f64) -> String {
 }
 
 /// Configurations in words.
-pub(crate) fn counted(configurations: usize) -> String {
+pub(crate) fn count_configurations(configurations: usize) -> String {
     if configurations == 1 {
         "one configuration".to_owned()
     } else {
@@ -22,21 +22,21 @@ pub(crate) fn counted(configurations: usize) -> String {
 }
 
 /// An order in words.
-pub(crate) fn words(order: Order) -> String {
+pub(crate) fn words(order: RowOrder) -> String {
     let rows = |by: usize| if by == 1 { "one row".to_owned() } else { format!("{by} rows") };
     match order {
-        Order::MeasuredLater(by) => format!("with the measurements {} later", rows(by)),
-        Order::JointsLater(by) => format!("with the joint readings {} later", rows(by)),
-        Order::Reversed => "in reverse order".to_owned(),
+        RowOrder::MeasuredLater(by) => format!("with the measurements {} later", rows(by)),
+        RowOrder::JointsLater(by) => format!("with the joint readings {} later", rows(by)),
+        RowOrder::Reversed => "in reverse order".to_owned(),
     }
 }
 
 /// Remedy if an order fits better.
-pub(crate) fn advice(order: Order) -> String {
+pub(crate) fn advice(order: RowOrder) -> String {
     let rows = |by: usize| if by == 1 { "the first row".to_owned() } else { format!("the first {by} rows") };
     match order {
-        Order::MeasuredLater(by) => format!("remove {} of the joint readings", rows(by)),
-        Order::JointsLater(by) => format!("remove {} of the measurements", rows(by)),
-        Order::Reversed => "turn one of the files round".to_owned(),
+        RowOrder::MeasuredLater(by) => format!("remove {} of the joint readings", rows(by)),
+        RowOrder::JointsLater(by) => format!("remove {} of the measurements", rows(by)),
+        RowOrder::Reversed => "turn one of the files round".to_owned(),
     }
 }

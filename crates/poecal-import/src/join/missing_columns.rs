@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::table::cells::{Separator, split};
 use crate::table::header::Header;
 use crate::table::header_cells::{header_cells, is_number, unit_in_name};
-use poecal_numerics::error::{Error, ErrorKind, MissingColumn, Result, first_few, nearest};
+use poecal_numerics::error::{Error, ErrorKind, MissingColumn, Result, first_few, nearest_word};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
@@ -49,7 +49,7 @@ impl Header<'_> {
     fn no_header(&self, name: &str) -> Option<String> {
         let has_name = |(_, text): &&(usize, String)| {
             let mut cells = Vec::new();
-            split(text, Separator::recognised(text), &mut cells).is_ok()
+            split(text, Separator::recognise(text), &mut cells).is_ok()
                 && header_cells(text, &cells).iter().any(|cell| cell.name == name)
         };
         if let Some((line, _)) = self.below.iter().find(has_name) {
@@ -87,7 +87,7 @@ impl Header<'_> {
             return format!("`{twice}` is the name of {} columns", self.count(twice));
         }
         let with_unit = names().find_map(|found| Some((found, unit_in_name(found, name)?)));
-        match (with_unit, nearest(name, names())) {
+        match (with_unit, nearest_word(name, names())) {
             (Some((found, unit)), _) => {
                 format!("if `{found}` is meant, write `{name}[{}]`", unit.symbol())
             }

@@ -7,7 +7,7 @@
 //! sets was measured, and whether names are above their values. `join_entry.rs` and `motions.rs` keep the record for `calibration.json` and the
 //! report.
 
-pub(crate) mod beside;
+pub(crate) mod input_roles;
 pub(crate) mod join_entry;
 pub(crate) mod join_judgement;
 pub(crate) mod join_lags;
@@ -17,9 +17,9 @@ pub(crate) mod join_pairs;
 pub(crate) mod join_plan;
 pub(crate) mod join_words;
 pub(crate) mod missing_columns;
-pub(crate) mod no_file_for;
-pub(crate) mod no_stands;
+pub(crate) mod missing_forms;
+pub(crate) mod missing_intervals;
 pub(crate) mod set_choice;
 pub(crate) mod shifted_header;
-pub(crate) mod unused;
+pub(crate) mod unused_options;
 pub(crate) mod witness;

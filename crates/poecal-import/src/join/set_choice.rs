@@ -5,12 +5,12 @@
 use std::path::Path;
 
 use super::join_pairs::{JointRows, Pairing};
-use super::join_plan::{Part, Plan, Planned};
+use super::join_plan::{FileRole, JoinPlan, PlannedFile};
 use crate::ReadOptions;
-use crate::instruments::{Called, MEASURED, Made, Opened};
-use crate::read::Reader;
+use crate::instruments::{CoordinateName, MEASURED, MadeTable, OpenedFile};
+use crate::read::MeasurementReader;
 use crate::table::mapping::ColumnMap;
-use crate::table::text::Blocks;
+use crate::table::text::LineBlocks;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -19,7 +19,7 @@ const COMPUTED_M: f64 = 5e-5;
 /// Ratio by which the error at the other set must then be larger.
 const MORE: f64 = 5.0;
 
-impl Plan<'_> {
+impl JoinPlan<'_> {
     /// Chooses the measured set of each file with two sets.
     pub(crate) fn settle_sets(
         &mut self,
@@ -27,16 +27,16 @@ impl Plan<'_> {
         options: &ReadOptions,
         map: &ColumnMap,
     ) -> Result<()> {
-        let mut of_joints = self.files.iter().position(|it| it.part == Part::Joints);
+        let mut of_joints = self.files.iter().position(|it| it.part == FileRole::Joints);
         for at in 0..self.files.len() {
             let Some(planned) = self.files.get(at) else { continue };
-            if planned.part == Part::Joints {
+            if planned.part == FileRole::Joints {
                 of_joints = Some(at);
             }
             let Some(sets) = planned.sets() else { continue };
-            let mut reader = Reader::new(robot, options, map);
+            let mut reader = MeasurementReader::new(robot, options, map);
             let table = match (planned.part, of_joints.and_then(|at| self.files.get(at))) {
-                (Part::Measured { .. }, Some(joints)) => {
+                (FileRole::Measured { .. }, Some(joints)) => {
                     let joints = reader.joint_rows(joints)?;
                     reader.measured_set(planned, sets, &joints)?
                 }
@@ -50,52 +50,65 @@ impl Plan<'_> {
     }
 }
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// A file's blocks; if it has two sets of coordinates, those of the set that was measured.
-    pub(crate) fn blocks_of_set<'p>(&self, path: &'p Path) -> Result<Blocks<'p>> {
-        let mut opened = self.opening().opened(path, MEASURED)?;
-        if let Opened::Made(table) = &opened
+    pub(crate) fn blocks_of_set<'p>(&self, path: &'p Path) -> Result<LineBlocks<'p>> {
+        let mut opened = self.opening_context().open_file(path, MEASURED)?;
+        if let OpenedFile::Made(table) = &opened
             && let Some(sets) = table.sets()
         {
-            opened = Opened::Made(Box::new(self.measured_set_of_whole(path, sets)?));
+            opened = OpenedFile::Made(Box::new(self.measured_set_of_whole(path, sets)?));
         }
         Ok(opened.blocks(path, MEASURED))
     }
 
     /// The set that was measured, in a file whose joint readings are in another.
-    fn measured_set(&self, planned: &Planned<'_>, sets: [Made; 2], joints: &JointRows) -> Result<Made> {
+    fn measured_set(
+        &self,
+        planned: &PlannedFile<'_>,
+        sets: [MadeTable; 2],
+        joints: &JointRows,
+    ) -> Result<MadeTable> {
         let path = planned.path;
-        let missed = |table: &Made, joints: &JointRows| -> Result<Option<f64>> {
+        let missed = |table: &MadeTable, joints: &JointRows| -> Result<Option<f64>> {
             let map = &planned.map;
-            let mut reader = Reader { map, ..Reader::new(self.robot, self.options, map) };
+            let mut reader =
+                MeasurementReader { map, ..MeasurementReader::new(self.robot, self.options, map) };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             let data = &reader.found.data;
             let pairing = Pairing::of_lists(joints, path, data, self.robot);
-            Ok(pairing.found(self.options.join).ok().and_then(|it| it.entry.missed_mm).map(|it| 1e-3 * it))
+            Ok(pairing
+                .find_readings(self.options.join)
+                .ok()
+                .and_then(|it| it.entry.missed_mm)
+                .map(|it| 1e-3 * it))
         };
         let mut errors = [missed(&sets[0], joints)?, missed(&sets[1], joints)?];
         if joints.is_without_unit && errors == [None, None] {
             let joints = joints.in_degrees();
             errors = [missed(&sets[0], &joints)?, missed(&sets[1], &joints)?];
         }
-        chosen(path, sets, errors)
+        choose_set(path, sets, errors)
     }
 
     /// The measured set of a file that has its joint readings.
-    fn measured_set_of_whole(&self, path: &Path, sets: [Made; 2]) -> Result<Made> {
-        let missed = |table: &Made| -> Result<Option<f64>> {
-            let mut reader = Reader { map: self.map, ..Reader::new(self.robot, self.options, self.map) };
+    fn measured_set_of_whole(&self, path: &Path, sets: [MadeTable; 2]) -> Result<MadeTable> {
+        let missed = |table: &MadeTable| -> Result<Option<f64>> {
+            let mut reader = MeasurementReader {
+                map: self.map,
+                ..MeasurementReader::new(self.robot, self.options, self.map)
+            };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             Ok(self.fit_m(&reader.found.data))
         };
         let errors = [missed(&sets[0])?, missed(&sets[1])?];
-        chosen(path, sets, errors)
+        choose_set(path, sets, errors)
     }
 }
 
 /// The set that was measured, by the errors of the nominal robot, metres; `None` if it does not fit a set.
-fn chosen(path: &Path, sets: [Made; 2], errors: [Option<f64>; 2]) -> Result<Made> {
-    let is_named = sets[1].called == Some(Called::Measured);
+fn choose_set(path: &Path, sets: [MadeTable; 2], errors: [Option<f64>; 2]) -> Result<MadeTable> {
+    let is_named = sets[1].called == Some(CoordinateName::Measured);
     let names = if is_named { ["nominal", "measured"] } else { ["first", "second"] };
     let words = |at: usize| match errors[at] {
         Some(missed) => format!("the {} by {:.3} mm (median)", names[at], 1e3 * missed),
@@ -138,8 +151,8 @@ mod tests {
 
     #[test]
     fn what_was_computed_is_not_what_was_measured() {
-        let sets = || [Made::default(), Made::default()];
-        let taken = |errors| chosen(Path::new("report.csv"), sets(), errors).map(|it| it.said.join("; "));
+        let sets = || [MadeTable::default(), MadeTable::default()];
+        let taken = |errors| choose_set(Path::new("report.csv"), sets(), errors).map(|it| it.said.join("; "));
         let (fits, computed) = (Some(2e-3), Some(1e-6));
         assert!(taken([fits, computed]).unwrap().contains("took the first"));
         assert!(taken([computed, fits]).unwrap().contains("took the second"));

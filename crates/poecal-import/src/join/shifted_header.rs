@@ -3,18 +3,18 @@
 use std::path::Path;
 
 use super::join_pairs::{JointRows, Pairing};
-use super::join_plan::Planned;
+use super::join_plan::PlannedFile;
 use crate::Join;
-use crate::instruments::{MEASURED, Opened};
-use crate::read::Reader;
-use crate::table::Table;
+use crate::instruments::{MEASURED, OpenedFile};
+use crate::read::MeasurementReader;
+use crate::table::FileTable;
 use crate::table::cells::{Separator, split};
 use crate::table::configurations::is_folder;
 use crate::table::header::Header;
 use crate::table::header_cells::is_number;
 use crate::table::inputs::InputSource;
 use crate::table::layout::ColumnLayout;
-use poecal_fit::start::{Agreement, Pair, Unpaired};
+use poecal_fit::start::{Agreement, RowPair, UnpairedRows};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{Error, ErrorKind};
 
@@ -25,7 +25,12 @@ const SHIFTS: [isize; 2] = [1, -1];
 
 impl ColumnLayout {
     /// The layout with every number taken from `by` columns further to the right, if a measured number is there, not a count.
-    pub(crate) fn shifted(mut self, by: isize, header: &Header<'_>, separator: Separator) -> Option<Self> {
+    pub(crate) fn shift_columns(
+        mut self,
+        by: isize,
+        header: &Header<'_>,
+        separator: Separator,
+    ) -> Option<Self> {
         let row = header.first_row()?;
         let mut cells = Vec::new();
         split(&row, separator, &mut cells).ok()?;
@@ -50,29 +55,29 @@ impl ColumnLayout {
 /// Largest number of rows of lists whose order is compared with shifted headers.
 const MOST_ROWS: usize = 2000;
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// The layout of the shifted values, if the header is judged to be shifted.
     pub(crate) fn as_shifted(
         &self,
         layout: ColumnLayout,
-        table: &Table<'_>,
+        table: &FileTable<'_>,
     ) -> poecal_numerics::error::Result<ColumnLayout> {
         if self.shift == 0 {
             return Ok(layout);
         }
         layout
-            .shifted(self.shift, &table.header, table.separator)
+            .shift_columns(self.shift, &table.header, table.separator)
             .ok_or_else(|| ErrorKind::Measurement.error("found no columns beside").in_file(table.header.path))
     }
 
     /// Error of the nominal robot at rows with their own readings, metres, if it evidently fits them.
     pub(crate) fn fit_m(&self, data: &Dataset) -> Option<f64> {
         let rows: Vec<u32> = data.all_rows().into_iter().step_by(data.len().div_ceil(SOME).max(1)).collect();
-        let data = &data.only(&rows);
+        let data = &data.select_rows(&rows);
         let readings: Vec<f64> = (0..data.len()).flat_map(|row| data.readings(row).to_vec()).collect();
-        let rows = Unpaired::new(self.robot, &readings, data);
+        let rows = UnpairedRows::new(self.robot, &readings, data);
         // Targets that are seen in one configuration have separate rows.
-        let pairs: Vec<Pair> = (rows.shots().iter().enumerate())
+        let pairs: Vec<RowPair> = (rows.shots().iter().enumerate())
             .filter_map(|(shot, of)| Some((*of.first()? as usize, shot)))
             .collect();
         match rows.agreement(&pairs) {
@@ -87,31 +92,32 @@ impl Reader<'_> {
         if is_folder(path) {
             return None;
         }
-        let blocks = || match self.opening().opened(path, MEASURED) {
-            Ok(Opened::Own(blocks)) => Some(*blocks),
-            Ok(Opened::Made(_)) | Err(_) => None,
+        let blocks = || match self.opening_context().open_file(path, MEASURED) {
+            Ok(OpenedFile::Own(blocks)) => Some(*blocks),
+            Ok(OpenedFile::Made(_)) | Err(_) => None,
         };
         let is_right = || {
             let rows = u32::try_from(first?).ok()?..u32::try_from(self.found.data.len()).ok()?;
-            self.fit_m(&self.found.data.only(&rows.collect::<Vec<u32>>()))
+            self.fit_m(&self.found.data.select_rows(&rows.collect::<Vec<u32>>()))
         };
         let fit = |shift: isize| {
             let map = self.map;
-            let mut reader = Reader { map, shift, ..Reader::new(self.robot, self.options, map) };
+            let mut reader =
+                MeasurementReader { map, shift, ..MeasurementReader::new(self.robot, self.options, map) };
             reader.rows_alone(path, blocks()?).ok()?;
             self.fit_m(&reader.found.data)
         };
         let possible = |shift: &isize| {
-            let table = Table::open(path, blocks()?, self.map).ok()?;
+            let table = FileTable::open(path, blocks()?, self.map).ok()?;
             let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map).ok()?;
-            layout.shifted(*shift, &table.header, table.separator).map(|_| table.header.line)
+            layout.shift_columns(*shift, &table.header, table.separator).map(|_| table.header.line)
         };
         for shift in SHIFTS {
             if let Some(line) = possible(&shift)
                 && is_right().is_none()
                 && let Some(missed_m) = fit(shift)
             {
-                return Some(shifted(path, line, shift, missed_m));
+                return Some(shifted_header_error(path, line, shift, missed_m));
             }
         }
         None
@@ -121,8 +127,8 @@ impl Reader<'_> {
     pub(crate) fn or_shifted(
         &self,
         error: Error,
-        (of_joints, joints): (Option<&Planned<'_>>, &JointRows),
-        planned: &Planned<'_>,
+        (of_joints, joints): (Option<&PlannedFile<'_>>, &JointRows),
+        planned: &PlannedFile<'_>,
     ) -> Error {
         let is_placed = error.place().is_some_and(|it| it.line.is_some());
         // Rows of recordings are not joined by their order.
@@ -136,30 +142,33 @@ impl Reader<'_> {
                 return None;
             }
             let pairing = Pairing::of_lists(joints, planned.path, data, self.robot);
-            pairing.found(None).ok()?.entry.missed_mm.map(|it| 1e-3 * it)
+            pairing.find_readings(None).ok()?.entry.missed_mm.map(|it| 1e-3 * it)
         };
         let fit = |joints: &JointRows, data: &Dataset| {
             fit(joints, data).or_else(|| fit(&joints.in_degrees(), data).filter(|_| joints.is_without_unit))
         };
         for shift in SHIFTS {
             let map = &planned.map;
-            let mut reader = Reader { map, shift, ..Reader::new(self.robot, self.options, map) };
-            let read = planned.blocks(self.opening(), MEASURED);
+            let mut reader =
+                MeasurementReader { map, shift, ..MeasurementReader::new(self.robot, self.options, map) };
+            let read = planned.blocks(self.opening_context(), MEASURED);
             if let Ok(()) = read.and_then(|blocks| reader.rows_alone(planned.path, blocks))
                 && let Some(missed_m) = fit(joints, &reader.found.data)
             {
-                return shifted(planned.path, reader.header_line, shift, missed_m);
+                return shifted_header_error(planned.path, reader.header_line, shift, missed_m);
             }
             let Some(of_joints) = of_joints else { continue };
-            let mut reader = Reader { shift, ..Reader::new(self.robot, self.options, self.map) };
+            let mut reader =
+                MeasurementReader { shift, ..MeasurementReader::new(self.robot, self.options, self.map) };
             let Ok(others) = reader.joint_rows(of_joints) else { continue };
             let line = reader.header_line;
-            let mut reader = Reader { map, ..Reader::new(self.robot, self.options, map) };
-            let read = planned.blocks(self.opening(), MEASURED);
+            let mut reader =
+                MeasurementReader { map, ..MeasurementReader::new(self.robot, self.options, map) };
+            let read = planned.blocks(self.opening_context(), MEASURED);
             if let Ok(()) = read.and_then(|blocks| reader.rows_alone(planned.path, blocks))
                 && let Some(missed_m) = fit(&others, &reader.found.data)
             {
-                return shifted(of_joints.path, line, shift, missed_m);
+                return shifted_header_error(of_joints.path, line, shift, missed_m);
             }
         }
         error
@@ -167,7 +176,7 @@ impl Reader<'_> {
 }
 
 /// The error of a shifted header.
-fn shifted(path: &Path, line: usize, shift: isize, missed_m: f64) -> Error {
+fn shifted_header_error(path: &Path, line: usize, shift: isize, missed_m: f64) -> Error {
     let (side, count) = if shift > 0 { ("right", "few") } else { ("left", "many") };
     ErrorKind::Measurement
         .error(format!(

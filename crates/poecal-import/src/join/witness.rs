@@ -1,6 +1,6 @@
 //! A table of configurations to be measured again.
 
-use crate::write::own_rows::{OwnColumn, OwnRows};
+use crate::write::own_rows::{OwnColumn, SessionTableRows};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -24,7 +24,8 @@ pub fn to_measure_again(
     .to_owned();
     let sees = |row: &u32| data.observations[*row as usize].measurement.sees_orientation();
     let columns = [OwnColumn::Joints, OwnColumn::Target, OwnColumn::Instrument, OwnColumn::Position];
-    let rows = OwnRows::new(data, robot, &columns)?.left_empty(configurations.iter().flatten().any(sees));
+    let rows =
+        SessionTableRows::new(data, robot, &columns)?.left_empty(configurations.iter().flatten().any(sees));
     out += &rows.header();
     out.push('\n');
     for (number, configuration) in configurations.iter().enumerate() {
@@ -39,11 +40,12 @@ pub fn to_measure_again(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use poecal_model::simulate::{Kind, Simulation, elbow};
+    use poecal_model::simulate::{SessionKind, Simulation, elbow};
 
     #[test]
     fn readings_have_four_decimals() {
-        let made = Simulation { count: 6, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
+        let made =
+            Simulation { count: 6, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
         let data = made.data.as_if_at(&[0], &[0.123_456_789; 6], 6).unwrap();
         let text = to_measure_again(&data, &[vec![0]], &made.nominal, false).unwrap();
         assert_eq!(text.lines().last(), Some("1,7.0736,7.0736,7.0736,7.0736,7.0736,7.0736,,,"), "{text}");

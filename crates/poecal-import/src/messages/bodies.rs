@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::parsed::{Message, Observation, Refuse as _};
+use super::parsed_message::{ParsedMessage, PartRefusal as _, SensorObservation};
 use crate::pictures::boards::FARTHEST_M;
 use poecal_model::camera::Board;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -13,16 +13,16 @@ const SAME_M: f64 = 1e-6;
 const MOVES: f64 = 1.5;
 
 /// A message, sorted.
-pub(crate) struct Picture<'a> {
-    pub(crate) message: &'a Message<'a>,
+pub(crate) struct SortedMessage<'a> {
+    pub(crate) message: &'a ParsedMessage<'a>,
     /// Observations in pixels.
-    pub(crate) pixels: Vec<&'a Observation<'a>>,
+    pub(crate) pixels: Vec<&'a SensorObservation<'a>>,
     /// Observations of points in the frame of a link: the body, and the indices of its points.
     points: Vec<(usize, Vec<usize>)>,
 }
 
 /// Points on a link that a sensor states, metres.
-pub(crate) struct Body {
+pub(crate) struct SensorPoints {
     pub(crate) sensor: String,
     /// The points, under the name of their frame.
     pub(crate) board: Board,
@@ -32,11 +32,11 @@ pub(crate) struct Body {
 
 /// The bodies of all messages.
 #[derive(Default)]
-pub(crate) struct Bodies(pub(crate) Vec<Body>);
+pub(crate) struct MessageBodies(pub(crate) Vec<SensorPoints>);
 
 /// True if an observation is one of pixels; an observation of points in space by a camera is refused by name.
-fn are_pixels(observation: &Observation<'_>) -> Result<bool> {
-    let Observation { node, sensor, features, .. } = observation;
+fn are_pixels(observation: &SensorObservation<'_>) -> Result<bool> {
+    let SensorObservation { node, sensor, features, .. } = observation;
     let deep = features.iter().find(|it| it.at[2] != 0.0);
     let is_wide = features.iter().any(|it| it.at[0].abs().max(it.at[1].abs()) > FARTHEST_M);
     let is_camera = observation.camera.is_some() || is_wide;
@@ -54,7 +54,7 @@ fn are_pixels(observation: &Observation<'_>) -> Result<bool> {
     Ok(is_camera)
 }
 
-impl Body {
+impl SensorPoints {
     /// Index of a point, which is added if no message had it before.
     fn index(&mut self, at: [f64; 3]) -> usize {
         let place = Vector3::from(at);
@@ -67,20 +67,20 @@ impl Body {
     }
 }
 
-impl Bodies {
+impl MessageBodies {
     /// Takes the points of a message.
-    pub(crate) fn take<'a>(&mut self, message: &'a Message<'a>) -> Result<Picture<'a>> {
+    pub(crate) fn take<'a>(&mut self, message: &'a ParsedMessage<'a>) -> Result<SortedMessage<'a>> {
         let (mut pixels, mut points) = (Vec::new(), Vec::new());
         for observation in message.observations.iter().filter(|it| !it.features.is_empty()) {
             if are_pixels(observation)? {
                 pixels.push(observation);
                 continue;
             }
-            let Observation { sensor, frame, features, .. } = observation;
-            let is_it = |body: &Body| body.sensor == *sensor && body.board.name == *frame;
+            let SensorObservation { sensor, frame, features, .. } = observation;
+            let is_it = |body: &SensorPoints| body.sensor == *sensor && body.board.name == *frame;
             let at = self.0.iter().position(is_it).unwrap_or_else(|| {
                 let board = Board { name: (*frame).to_owned(), ..Board::default() };
-                self.0.push(Body { sensor: (*sensor).to_owned(), board, most: 0 });
+                self.0.push(SensorPoints { sensor: (*sensor).to_owned(), board, most: 0 });
                 self.0.len() - 1
             });
             if let Some(body) = self.0.get_mut(at) {
@@ -88,13 +88,13 @@ impl Bodies {
                 points.push((at, features.iter().map(|it| body.index(it.at)).collect()));
             }
         }
-        Ok(Picture { message, pixels, points })
+        Ok(SortedMessage { message, pixels, points })
     }
 
     /// Refuses points whose positions differ from message to message: a camera saw them in space.
     pub(crate) fn refuse_moving(&self) -> Result<()> {
-        let moves = |body: &&Body| body.board.points.len() as f64 > MOVES * body.most as f64;
-        let Some(Body { sensor, board, .. }) = self.0.iter().find(moves) else { return Ok(()) };
+        let moves = |body: &&SensorPoints| body.board.points.len() as f64 > MOVES * body.most as f64;
+        let Some(SensorPoints { sensor, board, .. }) = self.0.iter().find(moves) else { return Ok(()) };
         ErrorKind::Measurement.refuse(format!(
             "found features of the sensor `{sensor}` in metres that move in its frame `{}` from message to message, as a 3-D camera sees them, expected \
              pixels (x and y, with z = 0), or points that stay in the frame of a link",
@@ -103,9 +103,9 @@ impl Bodies {
     }
 }
 
-impl Picture<'_> {
+impl SortedMessage<'_> {
     /// The points of the message that an observation of pixels sees: the ones with the same number of features.
-    pub(crate) fn partner(&self, observation: &Observation<'_>) -> Result<&(usize, Vec<usize>)> {
+    pub(crate) fn partner(&self, observation: &SensorObservation<'_>) -> Result<&(usize, Vec<usize>)> {
         let (count, sensor) = (observation.features.len(), observation.sensor);
         let alike: Vec<_> = self.points.iter().filter(|it| it.1.len() == count).collect();
         match alike[..] {

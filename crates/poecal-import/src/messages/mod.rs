@@ -2,39 +2,39 @@
 //! readings of the joints by name. They become rows of corners, which are read as those of a table.
 
 mod bodies;
-mod parsed;
-mod refused;
+mod parsed_message;
+mod recognition;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use self::bodies::{Bodies, Picture};
-use self::parsed::{CameraInfo, Message, NO_PATH, Observation, Refuse as _};
-pub(crate) use self::refused::are_messages;
-use super::instruments::{Column, Made, Value};
-use super::read::Reader;
-use super::table::Table;
+use self::bodies::{MessageBodies, SortedMessage};
+use self::parsed_message::{CameraInfo, NO_PATH, ParsedMessage, PartRefusal as _, SensorObservation};
+pub(crate) use self::recognition::are_messages;
+use super::instruments::{CellValue, MadeTable, TableColumn};
+use super::read::MeasurementReader;
+use super::table::FileTable;
 use crate::pictures::lens_checks::{check, distortion};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::mapping::ColumnMap;
-use crate::table::text::Blocks;
+use crate::table::text::LineBlocks;
 use poecal_model::camera::{Board, Camera, Lens, size_of_pictures};
 use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
 /// The joints of the readings, by their names in the messages, each with whether it is a length.
-type Joints = Vec<(String, bool)>;
+type MessageJoints = Vec<(String, bool)>;
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Reads a file of messages.
-    pub(crate) fn messages(&mut self, path: &Path, mut blocks: Blocks<'_>) -> Result<()> {
+    pub(crate) fn messages(&mut self, path: &Path, mut blocks: LineBlocks<'_>) -> Result<()> {
         let text = blocks.rest()?;
         let made = self.corners_of_messages(&text).map_err(|error| error.with_path(path).in_file(path))?;
         let mut rows = made.blocks(path, "messages");
-        let warned = rows.said().warnings;
+        let warned = rows.take_remarks().warnings;
         // A column of the header is not one of the file.
         let column = |error: &Error| error.place().and_then(|place| place.column);
-        Table::open(path, rows, &ColumnMap::default())
+        FileTable::open(path, rows, &ColumnMap::default())
             .and_then(|table| self.corners(path, table))
             .map_err(|error| if column(&error).is_some() { error.without_line() } else { error })?;
         self.found.sha256.extend(blocks.sha256().map(|sha256| (path.display().to_string(), sha256)));
@@ -43,15 +43,18 @@ impl Reader<'_> {
     }
 
     /// The rows of corners of the messages; errors name no file.
-    fn corners_of_messages(&mut self, text: &str) -> Result<Made> {
-        let nodes = parsed::nodes(text)?;
-        let messages: Vec<Message<'_>> = nodes.iter().map(parsed::message).collect::<Result<_>>()?;
+    fn corners_of_messages(&mut self, text: &str) -> Result<MadeTable> {
+        let nodes = parsed_message::nodes(text)?;
+        let messages: Vec<ParsedMessage<'_>> =
+            nodes.iter().map(parsed_message::message).collect::<Result<_>>()?;
         let Some(first) = messages.first() else {
-            return ErrorKind::Measurement.refuse(format!("found no message, expected {}", parsed::EXPECTED));
+            return ErrorKind::Measurement
+                .refuse(format!("found no message, expected {}", parsed_message::EXPECTED));
         };
         let joints = self.joints_of(first)?;
-        let mut bodies = Bodies::default();
-        let pictures: Vec<Picture<'_>> = messages.iter().map(|it| bodies.take(it)).collect::<Result<_>>()?;
+        let mut bodies = MessageBodies::default();
+        let pictures: Vec<SortedMessage<'_>> =
+            messages.iter().map(|it| bodies.take(it)).collect::<Result<_>>()?;
         bodies.refuse_moving()?;
         let camera = self.take_cameras(&messages)?;
         if self.cameras.is_empty() {
@@ -60,11 +63,11 @@ impl Reader<'_> {
         let board = self.take_boards(&bodies)?;
         let sensors: BTreeSet<&str> = pictures.iter().flat_map(|it| &it.pixels).map(|it| it.sensor).collect();
         let is_one_camera = self.options.cameras.len() == 1 && sensors.len() == 1;
-        let pixel = |axis: &str| Column::from(axis).in_unit("px");
-        let reading = |it: &(String, bool)| Column::from(&*it.0).in_unit(if it.1 { "m" } else { "rad" });
-        let columns = ["image", "camera", "board", "target"].into_iter().map(Column::from);
+        let pixel = |axis: &str| TableColumn::from(axis).in_unit("px");
+        let reading = |it: &(String, bool)| TableColumn::from(&*it.0).in_unit(if it.1 { "m" } else { "rad" });
+        let columns = ["image", "camera", "board", "target"].into_iter().map(TableColumn::from);
         let columns = columns.chain(["u", "v"].map(pixel)).chain(joints.iter().map(reading));
-        let mut made = Made::new(1, columns).of_file("messages", None);
+        let mut made = MadeTable::new(1, columns).of_file("messages", None);
         let mut without = Vec::new();
         for (number, picture) in (1..).zip(&pictures) {
             let image = format!("message {number}");
@@ -73,9 +76,9 @@ impl Reader<'_> {
                 let camera = if is_one_camera { "" } else { observation.sensor };
                 let readings = readings(picture.message, &joints)?;
                 for (feature, name) in observation.features.iter().zip(&names) {
-                    let words = [&image, camera, &board, name].map(Value::Text);
+                    let words = [&image, camera, &board, name].map(CellValue::Text);
                     let numbers = feature.at.iter().take(2).chain(&readings).copied();
-                    made.row(feature.node.line, words.into_iter().chain(numbers.map(Value::Number)));
+                    made.row(feature.node.line, words.into_iter().chain(numbers.map(CellValue::Number)));
                 }
             }
             if picture.pixels.is_empty() {
@@ -101,8 +104,8 @@ impl Reader<'_> {
     }
 
     /// The joints that the readings need; the first message must have all of them.
-    fn joints_of(&self, first: &Message<'_>) -> Result<Joints> {
-        let mut joints: Joints = Vec::new();
+    fn joints_of(&self, first: &ParsedMessage<'_>) -> Result<MessageJoints> {
+        let mut joints: MessageJoints = Vec::new();
         for name in self.found.data.reading_names() {
             let is_length = self.robot.reading_kind(name) == ReadingKind::Length;
             let kept = self.options.controller.iter().flat_map(|it| &it.readings);
@@ -125,7 +128,7 @@ impl Reader<'_> {
     }
 
     /// Takes the cameras of the messages, unless the user stated cameras. Returns a sentence on them.
-    fn take_cameras(&mut self, messages: &[Message<'_>]) -> Result<Option<String>> {
+    fn take_cameras(&mut self, messages: &[ParsedMessage<'_>]) -> Result<Option<String>> {
         let mut infos: BTreeMap<&str, &CameraInfo> = BTreeMap::new();
         for observation in messages.iter().flat_map(|it| &it.observations) {
             let Some(info) = &observation.camera else { continue };
@@ -164,7 +167,7 @@ impl Reader<'_> {
     }
 
     /// Takes the boards of the messages, unless the user stated boards. Returns a sentence on them.
-    fn take_boards(&mut self, bodies: &Bodies) -> Result<Option<String>> {
+    fn take_boards(&mut self, bodies: &MessageBodies) -> Result<Option<String>> {
         if bodies.0.is_empty() {
             return Ok(None);
         }
@@ -200,9 +203,9 @@ impl Reader<'_> {
     /// The board of an observation of pixels, empty if there is only one, and the names of its features.
     fn names(
         &self,
-        picture: &Picture<'_>,
-        observation: &Observation<'_>,
-        bodies: &Bodies,
+        picture: &SortedMessage<'_>,
+        observation: &SensorObservation<'_>,
+        bodies: &MessageBodies,
     ) -> Result<(String, Vec<String>)> {
         let stated = &self.options.boards;
         if let [board] = stated.as_slice() {
@@ -232,7 +235,7 @@ impl Reader<'_> {
 }
 
 /// The readings of a message in the order of the joints.
-fn readings(message: &Message<'_>, joints: &Joints) -> Result<Vec<f64>> {
+fn readings(message: &ParsedMessage<'_>, joints: &MessageJoints) -> Result<Vec<f64>> {
     let mut readings = Vec::with_capacity(joints.len());
     for (name, _) in joints {
         let Some((_, value)) = message.joints.iter().find(|(own, _)| own == name) else {
@@ -259,5 +262,5 @@ fn lens(info: &CameraInfo) -> Result<(Lens, Option<String>)> {
     let size_px = size_of_pictures(size_px.map(|side| is_stated.then_some(side)))?;
     let distortion = distortion(model, d, Path::new(NO_PATH))?;
     let whole = Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px };
-    region.applied(&whole).map_err(|found| ErrorKind::Measurement.error(found))
+    region.apply_region(&whole).map_err(|found| ErrorKind::Measurement.error(found))
 }

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::stated::{Stated, of_xml};
+use super::keyed_values::{KeyedValues, of_xml};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::limits::Limit;
-use poecal_storage::other_keys::KeysOf;
+use poecal_storage::limits::ResourceLimit;
+use poecal_storage::other_keys::KeyOwner;
 use poecal_storage::source_text::read_up_to;
-use poecal_storage::yaml::{Leaf, leaves};
+use poecal_storage::yaml::{YamlLeaf, leaves};
 
 /// Description of such a file in errors.
 const EXPECTED: &str = "a board: YAML of Kalibr (target_type, …) or industrial_calibration (target_finder), or settings of OpenCV's calibration \
@@ -24,7 +24,7 @@ const DICTIONARIES: &str = "DICT_4X4_50 DICT_4X4_100 DICT_4X4_250 DICT_4X4_1000 
                             DICT_APRILTAG_16h5 DICT_APRILTAG_25h9 DICT_APRILTAG_36h10 DICT_APRILTAG_36h11";
 
 /// A program whose files have boards.
-struct Maker {
+struct BoardSoftware {
     name: &'static str,
     /// A key that only its files have.
     mark: &'static str,
@@ -32,18 +32,18 @@ struct Maker {
     section: &'static str,
     /// Keys that are read or do not change the board, in small letters; a key that ends with a star is a beginning.
     known: &'static str,
-    words: fn(&Stated<'_>) -> Result<String>,
+    words: fn(&KeyedValues<'_>) -> Result<String>,
 }
 
-const MAKERS: [Maker; 3] = [
-    Maker {
+const MAKERS: [BoardSoftware; 3] = [
+    BoardSoftware {
         name: "Kalibr",
         mark: "target_type",
         section: "Settings",
         known: "target_type tagcols tagrows tagsize tagspacing codeoffset targetcols targetrows rowspacingmeters colspacingmeters spacingmeters asymmetricgrid",
         words: |it| it.kalibr(),
     },
-    Maker {
+    BoardSoftware {
         name: "industrial_calibration",
         mark: "target_finder.type",
         section: "target_finder",
@@ -51,7 +51,7 @@ const MAKERS: [Maker; 3] = [
         known: "type cols rows spacing chessboard_dim aruco_marker_dim dictionary circle_diameter circle_detector_params",
         words: |it| it.industrial(),
     },
-    Maker {
+    BoardSoftware {
         name: "OpenCV's settings",
         mark: "BoardSize_Width",
         // The board may also be at the top level. Keys beside it state how pictures are taken and which results are written.
@@ -78,33 +78,33 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let path = Path::new(typed);
     let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
     let Some(ending) = ending.filter(|it| ENDINGS.contains(&it.as_str())) else { return Ok(None) };
-    let text = read_up_to(path, EXPECTED, Limit::Settings)?;
+    let text = read_up_to(path, EXPECTED, ResourceLimit::Settings)?;
     let leaves =
         if ending == "xml" { of_xml(&text, path, EXPECTED)? } else { leaves(&text, path, EXPECTED)? };
-    let stated = Stated { leaves, path };
+    let stated = KeyedValues { leaves, path };
     let Some(maker) = MAKERS.iter().find(|it| stated.find(it.mark).is_some()) else {
         return Err(ErrorKind::Option.error(format!("found no board, expected {EXPECTED}")).in_file(path));
     };
     let words = (maker.words)(&stated)?;
-    let others = stated.unread(maker)?.map_or(String::new(), |it| format!("; {it}"));
+    let others = stated.describe_unread_keys(maker)?.map_or(String::new(), |it| format!("; {it}"));
     let said = format!("{}: read the board `{words}` ({}){others}", path.display(), maker.name);
     Ok(Some(BoardOfFile { words, said }))
 }
 
-impl Stated<'_> {
+impl KeyedValues<'_> {
     /// The value behind keys that are joined by dots, at the top level or below others.
-    fn find(&self, keys: &str) -> Option<&Leaf> {
+    fn find(&self, keys: &str) -> Option<&YamlLeaf> {
         let count = keys.split('.').count();
         self.leaves.iter().find(|leaf| leaf.path.iter().rev().take(count).eq(keys.rsplit('.')))
     }
 
-    fn refuse(&self, leaf: &Leaf, expected: &str) -> Error {
+    fn refuse(&self, leaf: &YamlLeaf, expected: &str) -> Error {
         let key = leaf.path.last().map_or("", String::as_str);
         let message = format!("found `{}` for `{key}`, expected {expected}", leaf.text);
         ErrorKind::Option.error(message).at_line(self.path, leaf.line)
     }
 
-    fn needed(&self, keys: &str) -> Result<&Leaf> {
+    fn require_leaf(&self, keys: &str) -> Result<&YamlLeaf> {
         self.find(keys).ok_or_else(|| {
             let message = format!("found no `{keys}`, expected it beside the other numbers of the board");
             ErrorKind::Option.error(message).in_file(self.path)
@@ -112,7 +112,7 @@ impl Stated<'_> {
     }
 
     fn above_0(&self, keys: &str) -> Result<f64> {
-        let leaf = self.needed(keys)?;
+        let leaf = self.require_leaf(keys)?;
         let number = leaf.text.parse().ok().filter(|it: &f64| it.is_finite() && *it > 0.0);
         number.ok_or_else(|| self.refuse(leaf, "a number above 0"))
     }
@@ -125,7 +125,7 @@ impl Stated<'_> {
     /// Counts along x and along y.
     fn counts(&self, columns: &str, rows: &str) -> Result<[usize; 2]> {
         let count = |keys: &str| {
-            let leaf = self.needed(keys)?;
+            let leaf = self.require_leaf(keys)?;
             let count = leaf.text.parse().ok().filter(|it| (1..=1000).contains(it));
             count.ok_or_else(|| self.refuse(leaf, "a count of 1 to 1000"))
         };
@@ -143,15 +143,15 @@ impl Stated<'_> {
     }
 
     /// The keys of the board that were not read.
-    fn unread(&self, maker: &Maker) -> Result<Option<String>> {
+    fn describe_unread_keys(&self, maker: &BoardSoftware) -> Result<Option<String>> {
         let is_below =
-            |leaf: &Leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == maker.section);
+            |leaf: &YamlLeaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == maker.section);
         let at = usize::from(self.leaves.iter().any(is_below));
-        self.others(KeysOf::Board, (at, |leaf| at == 0 || is_below(leaf)), &[maker.known])
+        self.describe_other_keys(KeyOwner::Board, (at, |leaf| at == 0 || is_below(leaf)), &[maker.known])
     }
 
     fn kalibr(&self) -> Result<String> {
-        let kind = self.needed("target_type")?;
+        let kind = self.require_leaf("target_type")?;
         match kind.text.as_str() {
             "aprilgrid" => {
                 if let Some(offset) = self.find("codeOffset").filter(|it| it.text.parse() != Ok(0)) {
@@ -165,7 +165,7 @@ impl Stated<'_> {
                 let [columns, rows] = self.counts("targetCols", "targetRows")?;
                 let side_m = self.above_0("rowSpacingMeters")?;
                 if self.above_0("colSpacingMeters")? != side_m {
-                    let other = self.needed("colSpacingMeters")?;
+                    let other = self.require_leaf("colSpacingMeters")?;
                     return Err(self.refuse(other, "the same as `rowSpacingMeters`: squares"));
                 }
                 // Kalibr counts inner corners.
@@ -182,7 +182,7 @@ impl Stated<'_> {
     }
 
     fn industrial(&self) -> Result<String> {
-        let kind = self.needed("target_finder.type")?;
+        let kind = self.require_leaf("target_finder.type")?;
         let counts = || self.counts("target_finder.cols", "target_finder.rows");
         match kind.text.as_str() {
             "ModifiedCircleGridTargetFinder" | "CircleGridTargetFinder" => {
@@ -202,7 +202,7 @@ impl Stated<'_> {
     }
 
     /// Markers by their name or OpenCV's number.
-    fn dictionary<'a>(&self, leaf: &'a Leaf) -> Result<&'a str> {
+    fn dictionary<'a>(&self, leaf: &'a YamlLeaf) -> Result<&'a str> {
         let is_name = leaf.text.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_');
         match leaf.text.parse::<usize>() {
             Ok(at) => DICTIONARIES
@@ -220,7 +220,7 @@ impl Stated<'_> {
             let stated = self.above_0(keys)?;
             Ok(millimetres(if stated < LEAST_MM { stated } else { 1e-3 * stated }))
         };
-        let (kind, square) = (self.needed("Calibrate_Pattern")?, length("Square_Size")?);
+        let (kind, square) = (self.require_leaf("Calibrate_Pattern")?, length("Square_Size")?);
         match kind.text.trim_matches('"') {
             // Inner corners; of a ChArUco board squares.
             "CHESSBOARD" => Ok(format!("chessboard:{}x{}:{square}", columns + 1, rows + 1)),
@@ -228,7 +228,7 @@ impl Stated<'_> {
             "ASYMMETRIC_CIRCLES_GRID" => Ok(format!("circles:{columns}x{rows}:{square}:asymmetric")),
             "CHARUCOBOARD" => {
                 let marker = length("Marker_Size")?;
-                let markers = self.dictionary(self.needed("ArUco_Dict_Name")?)?;
+                let markers = self.dictionary(self.require_leaf("ArUco_Dict_Name")?)?;
                 Ok(format!("charuco:{columns}x{rows}:{square}:{marker}:{markers}"))
             }
             _ => Err(self.refuse(kind, "CHESSBOARD, CIRCLES_GRID, ASYMMETRIC_CIRCLES_GRID or CHARUCOBOARD")),

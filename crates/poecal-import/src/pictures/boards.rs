@@ -10,9 +10,9 @@ use super::stored_pictures::stored_boards;
 use crate::table::header::Header;
 use crate::table::header_cells::unit_in_name;
 use crate::table::mapping::ColumnMap;
-use crate::table::number::Numbers;
-use crate::table::text::Blocks;
-use crate::table::{Row, Table};
+use crate::table::number::NumberReader;
+use crate::table::text::LineBlocks;
+use crate::table::{FileRow, FileTable};
 use poecal_model::camera::Board;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
@@ -57,7 +57,7 @@ fn coordinate(header: &Header<'_>, name: &str) -> Result<Coordinate> {
 
 fn of_table(path: &Path) -> Result<Vec<Board>> {
     let map = ColumnMap::default();
-    let mut table = Table::open(path, Blocks::open(path, "points of a board (CSV)")?, &map)?;
+    let mut table = FileTable::open(path, LineBlocks::open(path, "points of a board (CSV)")?, &map)?;
     let header = &table.header;
     let name = ["target", "marker", "corner", "name"].iter().find(|name| header.count(name) > 0);
     let Some(name) = name else {
@@ -66,7 +66,7 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
     };
     let (name_at, of_board) = (header.find(name)?.unwrap_or(0), header.find("board")?);
     let columns = [coordinate(header, "x")?, coordinate(header, "y")?, coordinate(header, "z")?];
-    let mut numbers = Numbers::new(None);
+    let mut numbers = NumberReader::new(None);
     let mut boards: Vec<Board> = Vec::new();
     table.some_rows("the points of a board", |row| {
         let mut point = Vector3::zeros();
@@ -99,14 +99,14 @@ pub(crate) const FARTHEST_M: f64 = 10.0;
 
 /// A coordinate of a point of a board in a cell, metres. In errors, `of` is the owner of the point, and `axis` the name of its column.
 pub(crate) fn length_on_board(
-    row: &Row<'_>,
+    row: &FileRow<'_>,
     (at, unit): Coordinate,
-    numbers: &mut Numbers,
+    numbers: &mut NumberReader,
     (of, axis): (&str, &str),
 ) -> Result<f64> {
     let value = unit.to_si(row.number(at, numbers, format_args!(" for {of}"))?);
     if value.abs() > FARTHEST_M {
-        let raw = row.raw(at);
+        let raw = row.raw_text(at);
         let message = format!(
             "found `{raw}` for {of}, {value} m, expected a point of a board: state the unit of the column, as {axis}[mm]"
         );

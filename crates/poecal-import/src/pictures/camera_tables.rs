@@ -6,13 +6,13 @@ use std::path::Path;
 use crate::pictures::lens_checks::EXPECTED;
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
-use crate::table::number::Numbers;
-use crate::table::text::Blocks;
-use crate::table::{Row, Table};
+use crate::table::number::NumberReader;
+use crate::table::text::LineBlocks;
+use crate::table::{FileRow, FileTable};
 use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens, size_of_pictures};
 use poecal_numerics::error::{ErrorKind, Result, first_few};
-use poecal_storage::other_keys::{KeysOf, other_keys};
-use poecal_storage::yaml::Leaf;
+use poecal_storage::other_keys::{KeyOwner, other_keys};
+use poecal_storage::yaml::YamlLeaf;
 
 /// The columns of a table of cameras.
 struct CameraColumns {
@@ -33,12 +33,12 @@ type CameraRow = (Camera, String, usize);
 /// The cameras of a table, of the named version, and a sentence on columns that were not read.
 pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<(Vec<Camera>, Vec<String>)> {
     let map = ColumnMap::default();
-    let mut table = Table::open(path, Blocks::open(path, "a camera (CSV)")?, &map)?;
+    let mut table = FileTable::open(path, LineBlocks::open(path, "a camera (CSV)")?, &map)?;
     let columns = CameraColumns::find(&table.header)?;
     let (mut cameras, mut others) = (Vec::new(), Vec::new());
-    let mut numbers = Numbers::new(None);
+    let mut numbers = NumberReader::new(None);
     table.some_rows(EXPECTED, |row| {
-        others.extend(columns.others.iter().map(|(at, name)| Leaf {
+        others.extend(columns.others.iter().map(|(at, name)| YamlLeaf {
             path: vec![name.clone()],
             text: row.word(Some(*at)),
             line: row.line,
@@ -55,7 +55,7 @@ pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<(Vec<Came
         }
     }
     refuse_twice(&table.header, columns.name.is_some(), &cameras)?;
-    let said = other_keys(&others, 0, |_| false, (KeysOf::Pictures, path))?;
+    let said = other_keys(&others, 0, |_| false, (KeyOwner::Pictures, path))?;
     Ok((cameras.into_iter().map(|(camera, ..)| camera).collect(), said.into_iter().collect()))
 }
 
@@ -82,9 +82,9 @@ impl CameraColumns {
     }
 
     /// The camera of a row, with its version and its line.
-    fn read(&self, reader: &mut Numbers, row: &Row<'_>) -> Result<CameraRow> {
+    fn read(&self, reader: &mut NumberReader, row: &FileRow<'_>) -> Result<CameraRow> {
         let mut number = |column: &Option<usize>, name: &str| {
-            let Some(at) = column.filter(|at| !row.raw(*at).is_empty()) else { return Ok(None) };
+            let Some(at) = column.filter(|at| !row.raw_text(*at).is_empty()) else { return Ok(None) };
             row.number(at, reader, format_args!(" for `{name}`")).map(Some)
         };
         let mut numbers = [0.0; LENS_NAMES.len()];

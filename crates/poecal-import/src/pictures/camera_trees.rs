@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
+use super::keyed_values::{KeyedValues, are_places, exact_numbers, listed_size, refuse};
 use super::mrcal::{OF_MRCAL, of_mrcal};
-use super::stated::{Stated, are_places, exact, listed_size, refuse};
 use crate::pictures::lens_checks::{EXPECTED, OTHERWISE, distortion};
 use poecal_model::camera::{Camera, Distortion, Lens, REGION_KEYS, Region, size_of_pictures};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::other_keys::KeysOf;
-use poecal_storage::yaml::Leaf;
+use poecal_storage::other_keys::KeyOwner;
+use poecal_storage::yaml::YamlLeaf;
 
 /// Keys of Kalibr's cameras that are read, or do not describe a lens.
 const OF_KALIBR: &str = "camera_model intrinsics distortion_model distortion_coeffs resolution t_cn_cnm1 t_cam_imu cam_overlaps timeshift_cam_imu";
@@ -37,13 +37,13 @@ const BESIDE: &str = "distortion header image_size r p rectification_matrix proj
                       rms seq frame_id extrinsics lensposition spechfovdeg";
 
 /// Cameras with sentences on their interpretation.
-type Read = (Vec<Camera>, Vec<String>);
+type ReadCameras = (Vec<Camera>, Vec<String>);
 
 /// The cameras of the documents of a text, which must be the same in all of them.
-pub(crate) fn read_trees(mut documents: Vec<Vec<Leaf>>, path: &Path) -> Result<Read> {
+pub(crate) fn read_trees(mut documents: Vec<Vec<YamlLeaf>>, path: &Path) -> Result<ReadCameras> {
     documents.retain(|it| it.iter().any(|leaf| !leaf.path.is_empty()));
     let count = documents.len();
-    let mut all = documents.into_iter().map(|leaves| read_tree(&Stated { leaves, path }));
+    let mut all = documents.into_iter().map(|leaves| read_tree(&KeyedValues { leaves, path }));
     let (cameras, mut said) =
         all.next().unwrap_or_else(|| refuse(path, format!("found nothing, expected {EXPECTED}")))?;
     for (at, other) in (2..).zip(all) {
@@ -63,13 +63,13 @@ pub(crate) fn read_trees(mut documents: Vec<Vec<Leaf>>, path: &Path) -> Result<R
 }
 
 /// The cameras of a document.
-fn read_tree(stated: &Stated<'_>) -> Result<Read> {
-    let others = |at: usize, own: &dyn Fn(&Leaf) -> bool, known: &[&str]| {
-        stated.others(KeysOf::Pictures, (at, own), known)
+fn read_tree(stated: &KeyedValues<'_>) -> Result<ReadCameras> {
+    let others = |at: usize, own: &dyn Fn(&YamlLeaf) -> bool, known: &[&str]| {
+        stated.describe_other_keys(KeyOwner::Pictures, (at, own), known)
     };
     let cameras = read_chain(stated)?;
     if !cameras.is_empty() {
-        let is_own = |leaf: &Leaf| cameras.iter().any(|it| leaf.path.first() == Some(&it.name));
+        let is_own = |leaf: &YamlLeaf| cameras.iter().any(|it| leaf.path.first() == Some(&it.name));
         let said = others(1, &is_own, &[OF_KALIBR])?;
         return Ok((cameras, said.into_iter().collect()));
     }
@@ -98,22 +98,23 @@ fn read_tree(stated: &Stated<'_>) -> Result<Read> {
 }
 
 /// Refuses keys beside those that lead to a lens if they scale or shift pictures; other keys there do not concern it.
-fn refuse_changes_above(stated: &Stated<'_>, place: &[String]) -> Result<()> {
+fn refuse_changes_above(stated: &KeyedValues<'_>, place: &[String]) -> Result<()> {
     for depth in 0..place.len() {
-        let beside = |leaf: &Leaf| {
+        let beside = |leaf: &YamlLeaf| {
             let path = leaf.path.get(..=depth)?;
             let is_beside = path.iter().zip(place).take(depth).all(|(key, own)| key == own)
                 && path.last() != place.get(depth);
-            is_beside.then(|| Leaf { path: path.to_vec(), ..leaf.clone() })
+            is_beside.then(|| YamlLeaf { path: path.to_vec(), ..leaf.clone() })
         };
-        let above = Stated { leaves: stated.leaves.iter().filter_map(beside).collect(), path: stated.path };
-        above.others(KeysOf::Pictures, (depth, |_: &Leaf| true), &["depth*", BESIDE])?;
+        let above =
+            KeyedValues { leaves: stated.leaves.iter().filter_map(beside).collect(), path: stated.path };
+        above.describe_other_keys(KeyOwner::Pictures, (depth, |_: &YamlLeaf| true), &["depth*", BESIDE])?;
     }
     Ok(())
 }
 
 /// The keys below which a matrix or focal lengths are stated, in the order of the file; empty keys if they are at the top level.
-fn places<'a>(stated: &'a Stated<'_>) -> Vec<&'a [String]> {
+fn places<'a>(stated: &'a KeyedValues<'_>) -> Vec<&'a [String]> {
     let is_matrix = |keys: &[String], list: &str| {
         let count = list.split('.').count();
         let (own, at) = keys.split_at(count.min(keys.len()));
@@ -135,18 +136,19 @@ fn places<'a>(stated: &'a Stated<'_>) -> Vec<&'a [String]> {
 }
 
 /// The cameras of Kalibr, which names them by keys; empty for another form.
-fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
+fn read_chain(stated: &KeyedValues<'_>) -> Result<Vec<Camera>> {
     let path = stated.path;
-    let is_lens = |leaf: &&Leaf| {
+    let is_lens = |leaf: &&YamlLeaf| {
         matches!(leaf.path.as_slice(), [_, key, _] if key == "intrinsics") && are_places(&leaf.path[2..])
     };
-    let has_model = |name: &&String| stated.below(std::slice::from_ref(*name)).word("camera_model").is_some();
+    let has_model =
+        |name: &&String| stated.keys_below(std::slice::from_ref(*name)).word("camera_model").is_some();
     let mut names: Vec<&String> =
         stated.leaves.iter().filter(is_lens).filter_map(|leaf| leaf.path.first()).collect();
     names.dedup();
     names.retain(has_model);
     let camera = |name: &String| {
-        let own = stated.below(std::slice::from_ref(name));
+        let own = stated.keys_below(std::slice::from_ref(name));
         let model = own.word("camera_model").unwrap_or_default();
         if model != "pinhole" {
             let expected = format!("`pinhole`: calibrate it so, {OTHERWISE}");
@@ -155,7 +157,7 @@ fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
                 format!("found the camera model `{model}` of `{name}`, expected {expected}"),
             );
         }
-        let [fx, fy, cx, cy] = exact(own.list("intrinsics")?, "intrinsics", path)?;
+        let [fx, fy, cx, cy] = exact_numbers(own.list("intrinsics")?, "intrinsics", path)?;
         let kind = own.word("distortion_model").unwrap_or("none");
         let distortion = distortion(kind, &own.list("distortion_coeffs")?, path)?;
         let size_px = listed_size(&own, "resolution")?;
@@ -169,7 +171,7 @@ fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
 const OTHER_LENSES: [&str; 6] = ["fisheye", "kannala", "equidistant", "mei", "omni", "division"];
 
 /// The word of another lens, anywhere in a document with one camera.
-fn other_lens<'s>(all: &'s Stated<'_>) -> Option<&'s str> {
+fn other_lens<'s>(all: &'s KeyedValues<'_>) -> Option<&'s str> {
     let is_one = |text: &str| {
         let mut words = text.split(|it: char| !it.is_alphanumeric());
         words.any(|word| OTHER_LENSES.iter().any(|it| word.eq_ignore_ascii_case(it)))
@@ -178,8 +180,8 @@ fn other_lens<'s>(all: &'s Stated<'_>) -> Option<&'s str> {
 }
 
 /// Refuses a distortion that belongs to no lens of the document.
-fn refuse_far_distortion(all: &Stated<'_>, places: &[&[String]]) -> Result<()> {
-    let is_far = |leaf: &&Leaf| {
+fn refuse_far_distortion(all: &KeyedValues<'_>, places: &[&[String]]) -> Result<()> {
+    let is_far = |leaf: &&YamlLeaf| {
         leaf.path.iter().any(|key| key.to_lowercase().contains("dist"))
             && (places.len() == 1 || !places.iter().any(|it| leaf.path.starts_with(it)))
             && leaf.text.parse::<f64>().is_ok_and(|number| number != 0.0)
@@ -193,13 +195,17 @@ fn refuse_far_distortion(all: &Stated<'_>, places: &[&[String]]) -> Result<()> {
 }
 
 /// The camera below these keys, and the effect of its region in words.
-fn read_single(all: &Stated<'_>, place: &[String], places: &[&[String]]) -> Result<(Camera, Option<String>)> {
+fn read_single(
+    all: &KeyedValues<'_>,
+    place: &[String],
+    places: &[&[String]],
+) -> Result<(Camera, Option<String>)> {
     let path = all.path;
     let in_file = |error: Error| error.in_file(path);
     let refused = |found: String| ErrorKind::Measurement.error(found).in_file(path);
-    let own = all.below(place);
+    let own = all.keys_below(place);
     // Coefficients and sizes may be beside the numbers of the lens.
-    let beside = all.below(place.split_last().map_or(place, |it| it.1));
+    let beside = all.keys_below(place.split_last().map_or(place, |it| it.1));
     let near = || [&own, &beside].into_iter();
     let word = |keys: &str| near().find_map(|it| it.word(keys));
     let (focal_px, centre_px) = focal(&own)?;
@@ -212,7 +218,7 @@ fn read_single(all: &Stated<'_>, place: &[String], places: &[&[String]]) -> Resu
         .or_else(|| word(MODEL_OF_ANY))
         .or_else(|| other_lens(all).filter(|_| places.len() == 1))
         .unwrap_or(usual);
-    let distortion = match near().find_map(|it| bent(it, kind).transpose()) {
+    let distortion = match near().find_map(|it| read_distortion(it, kind).transpose()) {
         Some(found) => found?,
         None => {
             refuse_far_distortion(all, places)?;
@@ -225,17 +231,17 @@ fn read_single(all: &Stated<'_>, place: &[String], places: &[&[String]]) -> Resu
     for (number, keys) in region.iter_mut().zip(REGION_KEYS) {
         *number = own.number(keys)?.unwrap_or(0.0);
     }
-    let (lens, said) = Region::new(region).and_then(|region| region.applied(&lens)).map_err(refused)?;
+    let (lens, said) = Region::new(region).and_then(|region| region.apply_region(&lens)).map_err(refused)?;
     Ok((Camera::new(word("camera_name").unwrap_or_default().to_owned(), lens), said))
 }
 
 /// Focal lengths and centre, by their names or from a matrix.
-fn focal(own: &Stated<'_>) -> Result<([f64; 2], [f64; 2])> {
+fn focal(own: &KeyedValues<'_>) -> Result<([f64; 2], [f64; 2])> {
     let [fx, fy, cx, cy] = FOCAL.map(|keys| own.number_called(keys));
     if let [Some(fx), Some(fy), Some(cx), Some(cy)] = [fx?, fy?, cx?, cy?] {
         return Ok(([fx, fy], [cx, cy]));
     }
-    match exact::<9>(own.list(MATRIX)?, "camera_matrix", own.path)? {
+    match exact_numbers::<9>(own.list(MATRIX)?, "camera_matrix", own.path)? {
         [fx, 0.0, cx, _, fy, cy, ..] if cx != 0.0 || cy != 0.0 => Ok(([fx, fy], [cx, cy])),
         // The matrix is column by column.
         [fx, 0.0, 0.0, 0.0, fy, 0.0, cx, cy, _] => Ok(([fx, fy], [cx, cy])),
@@ -244,12 +250,12 @@ fn focal(own: &Stated<'_>) -> Result<([f64; 2], [f64; 2])> {
 }
 
 /// The distortion that is stated here, if any.
-fn bent(own: &Stated<'_>, kind: &str) -> Result<Option<Distortion>> {
+fn read_distortion(own: &KeyedValues<'_>, kind: &str) -> Result<Option<Distortion>> {
     let numbers = own.list(COEFFICIENTS)?;
     if !numbers.is_empty() {
         return distortion(kind, &numbers, own.path).map(Some);
     }
-    for own in [own.below(&[])].into_iter().chain(BENT.map(|key| own.below(&[key.to_owned()]))) {
+    for own in [own.keys_below(&[])].into_iter().chain(BENT.map(|key| own.keys_below(&[key.to_owned()]))) {
         let named = NAMED.map(|key| own.number_called(key));
         let mut numbers = [0.0; NAMED.len()];
         let mut is_stated = false;

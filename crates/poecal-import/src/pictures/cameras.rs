@@ -7,14 +7,14 @@ use roxmltree::Node;
 use super::camera_tables::read_table;
 use super::camera_trees::read_trees;
 use super::halcon::read_halcon;
+use super::keyed_values::of_xml;
 use super::mrcal::without_inputs;
-use super::stated::of_xml;
 use super::stored_pictures::stored_cameras;
 use crate::pictures::lens_checks::{EXPECTED, check};
 use poecal_model::camera::{Camera, Distortion, LARGEST_SIDE, Lens, size_of_pictures};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::is_file;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text::read_up_to;
 use poecal_storage::text_of;
 use poecal_storage::xml::{parsed, root_name};
@@ -59,7 +59,7 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     }
     let (path, version) = camera_file(typed).unwrap_or((Path::new(typed), None));
     let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
-    let text = |what: &str| read_up_to(path, what, Limit::Settings);
+    let text = |what: &str| read_up_to(path, what, ResourceLimit::Settings);
     let (cameras, said) = match ending.as_deref() {
         Some("yaml" | "yml" | "cameramodel") => {
             let text = text("a camera (YAML)")?;
@@ -111,7 +111,7 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
     for node in document.descendants().filter(|node| node.has_tag_name("camera")) {
         let camera = visp_camera(node).map_err(|(at, message)| {
             let place = document.text_pos_at(at);
-            ErrorKind::Measurement.error(message).at(path, place.row as usize, place.col as usize)
+            ErrorKind::Measurement.error(message).at_position(path, place.row as usize, place.col as usize)
         })?;
         cameras.extend(camera.filter(|camera| !cameras.iter().any(|it| it.name == camera.name)));
     }

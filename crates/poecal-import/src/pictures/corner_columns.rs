@@ -3,10 +3,10 @@
 use super::boards::Coordinate;
 use crate::table::header::Header;
 use crate::table::header_cells::{HeaderCell, unit_in_name};
-use crate::table::inputs::Range;
+use crate::table::inputs::ValueRange;
 use crate::table::kinds;
 use crate::table::mapping::ColumnMap;
-use crate::table::roles::{Role, plain};
+use crate::table::roles::{ColumnRole, plain_letters};
 use crate::table::understanding::ColumnUnderstanding;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
@@ -29,7 +29,7 @@ pub(crate) struct CornerColumns {
 
 /// Letters and digits of a column's name, in small letters, with `px` behind them if that is its unit.
 fn key(cell: &HeaderCell) -> String {
-    let name = plain(&cell.name);
+    let name = plain_letters(&cell.name);
     let short = ["pixels", "pixel"].iter().find_map(|end| name.strip_suffix(end));
     let name = short.filter(|start| !start.is_empty()).map_or(name.clone(), |start| format!("{start}px"));
     if cell.units().any(is_pixel) && !name.ends_with("px") { format!("{name}px") } else { name }
@@ -78,7 +78,7 @@ fn pixels(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<Opt
         return Ok(None);
     }
     let mut found: Option<[usize; 2]> = None;
-    for (u, v) in Role::Pixel.rows().filter_map(|names| names.split_once(' ')) {
+    for (u, v) in ColumnRole::Pixel.rows().filter_map(|names| names.split_once(' ')) {
         let both = column(header, [u], joints)?.zip(column(header, [v], joints)?);
         if let (Some([first, _]), Some((second, _))) = (found, both) {
             let message = format!(
@@ -110,12 +110,12 @@ pub(crate) fn are_readings_of_pictures(header: &Header<'_>, joints: &[String], m
 
 /// The column of the picture's name.
 pub(crate) fn picture(header: &Header<'_>, joints: &[String]) -> Result<Option<usize>> {
-    column(header, Role::Picture.words().chain(Role::Frame.words()), joints)
+    column(header, ColumnRole::Picture.words().chain(ColumnRole::Frame.words()), joints)
 }
 
 /// The columns of the position on the board.
 fn place(header: &Header<'_>) -> Result<Option<[Coordinate; 3]>> {
-    let before = Role::OnBoard.words().flat_map(|word| [format!("{word}_"), word.to_owned()]);
+    let before = ColumnRole::OnBoard.words().flat_map(|word| [format!("{word}_"), word.to_owned()]);
     let found = std::iter::once(String::new()).chain(before).find_map(|before| {
         let of = ["x", "y", "z"].map(|axis| of_length(header, &format!("{before}{axis}")));
         let [Some(x), Some(y), Some(z)] = of else { return None };
@@ -155,14 +155,14 @@ impl CornerColumns {
         (map, has_boards): (&ColumnMap, bool),
     ) -> Result<Option<Self>> {
         let Some([u, v]) = pixels(header, joints, map)? else { return Ok(None) };
-        let sigma = column(header, Role::PixelSigma.words(), joints)?;
+        let sigma = column(header, ColumnRole::PixelSigma.words(), joints)?;
         for column in [Some(u), Some(v), sigma].into_iter().flatten() {
             if !header.cells.get(column).is_some_and(|cell| cell.units().all(is_pixel)) {
                 header.only_unit(column, "px")?;
             }
         }
         let place = place(header)?;
-        let name = match column(header, Role::Corner.words(), joints)? {
+        let name = match column(header, ColumnRole::Corner.words(), joints)? {
             // A column that counts rows, if the file states the positions of the corners.
             Some(at) if place.is_some() && is_count(header, at) => None,
             name => name,
@@ -176,8 +176,8 @@ impl CornerColumns {
             sigma,
             name,
             place: place.filter(|_| name.is_none() || !has_boards),
-            camera: column(header, Role::Camera.words(), joints)?,
-            board: column(header, Role::Board.words(), joints)?,
+            camera: column(header, ColumnRole::Camera.words(), joints)?,
+            board: column(header, ColumnRole::Board.words(), joints)?,
             image: picture(header, joints)?,
         }))
     }
@@ -217,7 +217,11 @@ impl CornerColumns {
     }
 
     /// Interpretation of the columns, for `poecal check`; `seen` are smallest and largest u, v and standard deviation.
-    pub(crate) fn understood(&self, header: &Header<'_>, seen: &[Range; 3]) -> Vec<ColumnUnderstanding> {
+    pub(crate) fn describe_columns(
+        &self,
+        header: &Header<'_>,
+        seen: &[ValueRange; 3],
+    ) -> Vec<ColumnUnderstanding> {
         let of = |(name, at): (&'static str, usize)| {
             let pixel = ["u", "v", "sigma"].into_iter().zip(seen).find(|it| it.0 == name).map(|it| it.1);
             let place = self.place.iter().flatten().find(|(own, _)| *own == at);

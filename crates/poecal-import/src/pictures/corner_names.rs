@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use super::board_words::BOARD;
 use super::boards::{Coordinate, length_on_board};
 use super::corner_columns::CornerColumns;
-use super::gathering::{Gathering, not_a_point};
-use crate::read::Reader;
-use crate::table::Row;
-use crate::table::number::Numbers;
+use super::gathering::{PictureGathering, not_a_point};
+use crate::read::MeasurementReader;
+use crate::table::FileRow;
+use crate::table::number::NumberReader;
 use poecal_model::camera::Board;
 use poecal_numerics::error::{Error, Result, first_few};
 
@@ -27,9 +27,9 @@ fn board_before<'a>(board: &Board, name: &'a str) -> Option<&'a str> {
     (board.find(name).is_none() && board.find(point).is_some()).then_some(before)
 }
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Index of the row's board, by the columns of its name and of the corner's.
-    pub(crate) fn board(&mut self, row: &Row<'_>, columns: &CornerColumns) -> Result<usize> {
+    pub(crate) fn board(&mut self, row: &FileRow<'_>, columns: &CornerColumns) -> Result<usize> {
         let only = self.options.boards.first().filter(|_| self.options.boards.len() == 1);
         let stated = Some(row.word(columns.board)).filter(|name| !name.is_empty());
         let name = stated.or_else(|| Some(board_before(only?, &row.word(columns.name))?.to_owned()));
@@ -52,9 +52,9 @@ impl Reader<'_> {
     /// Index of the row's corner on its board; its number if it is numbered.
     pub(crate) fn point(
         &mut self,
-        row: &Row<'_>,
+        row: &FileRow<'_>,
         columns: &CornerColumns,
-        (board, gathering): (usize, &mut Gathering),
+        (board, gathering): (usize, &mut PictureGathering),
     ) -> Result<u32> {
         if let Some(place) = columns.place {
             return self.point_at(row, columns.name, (board, place));
@@ -66,7 +66,7 @@ impl Reader<'_> {
             gathering.named.entry(board).or_insert((name, place));
             return Ok(u32::try_from(at).unwrap_or(u32::MAX));
         }
-        let has_numbers = gathering.numbers.contains_key(&board) || !own.numbered().is_empty();
+        let has_numbers = gathering.numbers.contains_key(&board) || !own.point_numbers().is_empty();
         let is_number = name.bytes().all(|it| it.is_ascii_digit());
         match name.parse::<u32>() {
             Ok(number) if is_number && has_numbers => {
@@ -80,11 +80,11 @@ impl Reader<'_> {
     /// Index of the point at the row's position on its board; a board from the file gets a new point if it has none there.
     fn point_at(
         &mut self,
-        row: &Row<'_>,
+        row: &FileRow<'_>,
         name: Option<usize>,
         (board, columns): (usize, [Coordinate; 3]),
     ) -> Result<u32> {
-        let (mut numbers, mut place) = (Numbers::new(self.map.decimal), Vector3::zeros());
+        let (mut numbers, mut place) = (NumberReader::new(self.map.decimal), Vector3::zeros());
         for (value, column) in place.iter_mut().zip(columns) {
             *value = length_on_board(row, column, &mut numbers, ("a place on the board", "X"))?;
         }
@@ -141,7 +141,7 @@ fn millimetres(point: &Vector3<f64>) -> String {
 }
 
 /// The error of a position at which a board has no point.
-fn far_from(row: &Row<'_>, at: usize, place: &Vector3<f64>, board: &Board) -> Error {
+fn far_from(row: &FileRow<'_>, at: usize, place: &Vector3<f64>, board: &Board) -> Error {
     let distance = |index: &usize| board.points.get(*index).map_or(f64::MAX, |it| (it - place).norm());
     let nearest = (0..board.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
     let name = board.names.get(nearest).map_or("", String::as_str);

@@ -3,15 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::picture_files::{Taken, TakenByImage};
-use crate::table::picture_names::Partners;
+use super::picture_files::{ConfigurationsByImage, PictureConfiguration};
+use crate::table::picture_names::PicturePartners;
 use poecal_model::camera::{Board, Corner};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
 /// A board in a picture, with the corners that were read.
-pub(crate) struct Sight {
+pub(crate) struct BoardSighting {
     /// The readings of the joints, unless another file has them.
-    pub(crate) taken: Option<Taken>,
+    pub(crate) taken: Option<PictureConfiguration>,
     pub(crate) image: Option<String>,
     pub(crate) camera: usize,
     pub(crate) board: usize,
@@ -19,24 +19,24 @@ pub(crate) struct Sight {
 }
 
 /// Line and column.
-type Place = (usize, usize);
+type TextPosition = (usize, usize);
 
 /// Pictures of a file, in the order in which they begin.
 #[derive(Default)]
-pub(crate) struct Gathering {
-    pub(crate) pictures: Vec<Sight>,
+pub(crate) struct PictureGathering {
+    pub(crate) pictures: Vec<BoardSighting>,
     pub(crate) known: BTreeMap<(String, usize, usize), usize>,
     /// The numbers of the points of each board, with the first occurrence of each number.
-    pub(crate) numbers: BTreeMap<usize, BTreeMap<u32, Place>>,
+    pub(crate) numbers: BTreeMap<usize, BTreeMap<u32, TextPosition>>,
     /// The first point of each board that has a name.
-    pub(crate) named: BTreeMap<usize, (String, Place)>,
+    pub(crate) named: BTreeMap<usize, (String, TextPosition)>,
 }
 
-impl Gathering {
+impl PictureGathering {
     /// Assigns points to numbers: by the numbers in the names of the board, or from 1 if the file counts so. Returns a sentence on it.
     pub(crate) fn settle_numbers(&mut self, path: &Path, boards: &[Board]) -> Result<Option<String>> {
-        let Gathering { pictures, numbers, named, .. } = self;
-        let own: Vec<BTreeMap<u32, u32>> = boards.iter().map(Board::numbered).collect();
+        let PictureGathering { pictures, numbers, named, .. } = self;
+        let own: Vec<BTreeMap<u32, u32>> = boards.iter().map(Board::point_numbers).collect();
         let point = |board: usize, number: u32| own.get(board)?.get(&number).copied();
         let all =
             || numbers.iter().flat_map(|(at, all)| all.iter().map(|(number, place)| (*at, *number, *place)));
@@ -47,14 +47,14 @@ impl Gathering {
             && all().any(|(at, number, _)| of(at, number).is_none())
             && let Some(board) = boards.get(at)
         {
-            return Err(not_a_point(&number.to_string(), board).at(path, line, column));
+            return Err(not_a_point(&number.to_string(), board).at_position(path, line, column));
         }
         let Some((at, number, _)) = all().next() else { return Ok(None) };
         if let Some((name, (line, column))) = named.get(&at) {
             let message = format!(
                 "found the corner `{name}` beside ones that are numbered, as `{number}`, expected names or numbers alone"
             );
-            return Err(ErrorKind::Measurement.error(message).at(path, *line, *column));
+            return Err(ErrorKind::Measurement.error(message).at_position(path, *line, *column));
         }
         for picture in pictures.iter_mut().filter(|it| numbers.contains_key(&it.board)) {
             for corner in &mut picture.corners {
@@ -78,12 +78,17 @@ impl Gathering {
 
     /// Assigns joint readings of another file, which has `what` by picture, to the pictures. Names are equal, or have equal numbers at their end
     /// that no other picture has. Returns sentences on the pictures that were left out.
-    pub(crate) fn join(&mut self, path: &Path, (others, what): (&TakenByImage, &str)) -> Result<Vec<String>> {
+    pub(crate) fn join(
+        &mut self,
+        path: &Path,
+        (others, what): (&ConfigurationsByImage, &str),
+    ) -> Result<Vec<String>> {
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
-        let partners = Partners::new(&seen, others.keys().collect());
+        let partners = PicturePartners::new(&seen, others.keys().collect());
         let alike = partners.words("pictures", seen.len());
         let mut words: Vec<String> = alike.map(|it| format!("{it} of the {what}")).into_iter().collect();
-        let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.partner(name).is_none()).collect();
+        let unknown: Vec<&String> =
+            seen.iter().copied().filter(|name| partners.partner(name).is_none()).collect();
         let used: BTreeSet<&String> = seen.iter().copied().chain(partners.alike.values().copied()).collect();
         let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();
         if unknown.len() == seen.len()
@@ -103,8 +108,8 @@ impl Gathering {
                 words.push(format!("left out the pictures that have {which}: {} ({few})", names.len()));
             }
         }
-        let taken = |sight: &Sight| others.get(partners.partner(sight.image.as_ref()?)?).cloned();
-        let taken: Vec<Option<Taken>> = self.pictures.iter().map(taken).collect();
+        let taken = |sight: &BoardSighting| others.get(partners.partner(sight.image.as_ref()?)?).cloned();
+        let taken: Vec<Option<PictureConfiguration>> = self.pictures.iter().map(taken).collect();
         for (picture, taken) in self.pictures.iter_mut().zip(taken) {
             picture.taken = taken;
         }

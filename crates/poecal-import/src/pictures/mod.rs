@@ -3,6 +3,7 @@
 //! `corner_columns.rs` finds the columns of corners, `stated.rs` the values of a file of cameras or boards by their keys. `board_files.rs` converts
 //! boards of other programs into words.
 
+pub(crate) mod append_row;
 pub(crate) mod board_files;
 pub(crate) mod board_words;
 pub(crate) mod boards;
@@ -13,11 +14,10 @@ pub(crate) mod corner_columns;
 pub(crate) mod corner_names;
 pub(crate) mod gathering;
 pub(crate) mod halcon;
+pub(crate) mod keyed_values;
 pub(crate) mod lens_checks;
 pub(crate) mod mrcal;
 pub(crate) mod picture_files;
 mod pixels;
 pub(crate) mod sightings;
-pub(crate) mod stated;
 pub(crate) mod stored_pictures;
-pub(crate) mod taken;

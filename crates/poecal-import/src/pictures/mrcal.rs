@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use super::keyed_values::{KeyedValues, exact_numbers, listed_size, refuse};
 use super::lens_checks::distortion;
-use super::stated::{Stated, exact, listed_size, refuse};
 use poecal_model::camera::{Camera, Lens};
 use poecal_numerics::error::Result;
 
@@ -14,7 +14,7 @@ pub(super) const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt
 const MRCAL_MODELS: [(&str, usize); 4] = [("PINHOLE", 0), ("OPENCV4", 4), ("OPENCV5", 5), ("OPENCV8", 8)];
 
 /// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.
-pub(super) fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
+pub(super) fn of_mrcal(stated: &KeyedValues<'_>) -> Result<Option<Camera>> {
     let Some(model) = stated.word("lensmodel") else { return Ok(None) };
     let known = MRCAL_MODELS.iter().find(|it| model.strip_prefix("LENSMODEL_") == Some(it.0));
     let Some((_, count)) = known else {
@@ -33,7 +33,7 @@ pub(super) fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
         return refuse(stated.path, message);
     }
     let bent = numbers.split_off(numbers.len().min(4));
-    let [fx, fy, cx, cy] = exact(numbers, "intrinsics", stated.path)?;
+    let [fx, fy, cx, cy] = exact_numbers(numbers, "intrinsics", stated.path)?;
     let size_px = listed_size(stated, "imagersize")?;
     let distortion = distortion("opencv", &bent, stated.path)?;
     Ok(Some(Camera::new(

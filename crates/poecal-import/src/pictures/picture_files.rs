@@ -11,7 +11,7 @@ pub(crate) const NO_CAMERA: &str =
 
 /// The configuration of a picture.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Taken {
+pub(crate) struct PictureConfiguration {
     pub(crate) readings: Vec<f64>,
     pub(crate) set: Option<Set>,
     pub(crate) id: String,
@@ -20,4 +20,4 @@ pub(crate) struct Taken {
 }
 
 /// Configurations by the names of their pictures.
-pub(crate) type TakenByImage = BTreeMap<String, Taken>;
+pub(crate) type ConfigurationsByImage = BTreeMap<String, PictureConfiguration>;

@@ -4,15 +4,15 @@
 use std::path::Path;
 
 use super::corner_columns::{self, CornerColumns};
-use super::gathering::{Gathering, Sight};
-use super::picture_files::{NO_CAMERA, Taken};
-use crate::read::Reader;
+use super::gathering::{BoardSighting, PictureGathering};
+use super::picture_files::{NO_CAMERA, PictureConfiguration};
+use crate::read::MeasurementReader;
 use crate::table::cursor::Cursor;
 use crate::table::header::Header;
-use crate::table::inputs::Range;
+use crate::table::inputs::ValueRange;
 use crate::table::layout::ColumnLayout;
-use crate::table::number::Numbers;
-use crate::table::{Row, Table};
+use crate::table::number::NumberReader;
+use crate::table::{FileRow, FileTable};
 use nalgebra::Vector2;
 use poecal_model::camera::Corner;
 use poecal_numerics::error::{ErrorKind, Result, first_few};
@@ -20,9 +20,9 @@ use poecal_numerics::error::{ErrorKind, Result, first_few};
 /// Largest pixel coordinate.
 const LARGEST_PX: f64 = 1e6;
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Reads a file of readings by picture, whose corners are in another one.
-    pub(crate) fn readings_of_pictures(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
+    pub(crate) fn readings_of_pictures(&mut self, path: &Path, mut table: FileTable<'_>) -> Result<()> {
         let mut layout = ColumnLayout::pictures(&table.header, self.robot, self.options, self.map)?;
         let image = corner_columns::picture(&table.header, self.found.data.reading_names())?;
         let missing = || table.header.require("image", "for the name of the picture", |_| false, "");
@@ -31,14 +31,14 @@ impl Reader<'_> {
         layout.ignored.retain(|(name, _)| *name != column);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         table.each_row(|row| {
-            let taken = self.taken(row, &mut inputs)?;
+            let taken = self.take_configuration(row, &mut inputs)?;
             let name = row.word(Some(image));
             if name.is_empty() {
                 let message =
                     format!("found an empty cell in column `{column}`, expected the name of a picture");
                 return Err(row.error(image, message));
             }
-            if let Some(Taken { place: (path, line), .. }) = self.taken.get(&name) {
+            if let Some(PictureConfiguration { place: (path, line), .. }) = self.taken.get(&name) {
                 let message = format!(
                     "found the picture `{name}` a second time ({}:{line} is the first), expected it once",
                     path.display()
@@ -57,7 +57,7 @@ impl Reader<'_> {
     }
 
     /// Reads a file of corners.
-    pub(crate) fn corners(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
+    pub(crate) fn corners(&mut self, path: &Path, mut table: FileTable<'_>) -> Result<()> {
         let joints = self.found.data.reading_names().to_vec();
         let has_boards = !self.boards.is_empty();
         let columns = CornerColumns::new(&table.header, &joints, (self.map, has_boards))?;
@@ -65,14 +65,14 @@ impl Reader<'_> {
         self.refuse_without_cameras(&table.header, &columns)?;
         let has_joints = self.taken.is_empty() || joints.iter().all(|name| table.header.count(name) > 0);
         let layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
-        let mut numbers = Numbers::new(self.map.decimal);
+        let mut numbers = NumberReader::new(self.map.decimal);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         let is_named = columns.names_pictures(&table.header);
-        let (mut gathering, mut seen) = (Gathering::default(), [Range::default(); 3]);
+        let (mut gathering, mut seen) = (PictureGathering::default(), [ValueRange::default(); 3]);
         let rows = table.some_rows("at least one corner", |row| {
             let image = Some(row.word(columns.image)).filter(|name| !name.is_empty());
             let taken = match (has_joints, &image) {
-                (true, _) => Some(self.taken(row, &mut inputs)?),
+                (true, _) => Some(self.take_configuration(row, &mut inputs)?),
                 (false, Some(_)) => None,
                 (false, None) => {
                     let message =
@@ -98,7 +98,7 @@ impl Reader<'_> {
         self.found.data.files.push(path.to_path_buf());
         let first = self.found.data.len();
         self.take_pictures(path, gathering.pictures)?;
-        let own = columns.understood(&table.header, &seen);
+        let own = columns.describe_columns(&table.header, &seen);
         self.understand_pictures(&table, &inputs, (first, rows, own))
     }
 
@@ -113,7 +113,7 @@ impl Reader<'_> {
             ColumnLayout::pictures(header, self.robot, self.options, self.map)?
         } else {
             let cells = header.cells.iter().filter(|cell| !cell.text.is_empty());
-            ColumnLayout::without(cells.map(|cell| (cell.text.clone(), None)).collect())
+            ColumnLayout::from_ignored(cells.map(|cell| (cell.text.clone(), None)).collect())
         };
         if !has_joints && columns.image.is_none() {
             header.require("image", "for the name of the picture", |_| false, "")?;
@@ -142,8 +142,12 @@ impl Reader<'_> {
     }
 
     /// The configuration of a row.
-    fn taken(&mut self, row: &Row<'_>, inputs: &mut Cursor<'_>) -> Result<Taken> {
-        Ok(Taken {
+    fn take_configuration(
+        &mut self,
+        row: &FileRow<'_>,
+        inputs: &mut Cursor<'_>,
+    ) -> Result<PictureConfiguration> {
+        Ok(PictureConfiguration {
             readings: inputs.read_joints(row)?.to_vec(),
             set: self.set(row, &inputs.layout)?,
             id: row.word(inputs.layout.id),
@@ -154,10 +158,10 @@ impl Reader<'_> {
     /// Adds a corner to its picture.
     fn gather(
         &mut self,
-        row: &Row<'_>,
+        row: &FileRow<'_>,
         columns: &CornerColumns,
-        gathering: &mut Gathering,
-        (image, taken, is_named): (Option<String>, Option<Taken>, bool),
+        gathering: &mut PictureGathering,
+        (image, taken, is_named): (Option<String>, Option<PictureConfiguration>, bool),
         mut corner: Corner,
     ) -> Result<()> {
         let camera = self.camera(row, columns.camera)?;
@@ -167,10 +171,10 @@ impl Reader<'_> {
         let own = taken.as_ref().filter(|_| image.is_none() || !is_named).map(|taken| &taken.readings);
         let id = taken.as_ref().map_or("", |taken| taken.id.as_str());
         let key = format!("{} {id} {own:?}", image.as_deref().unwrap_or_default());
-        let Gathering { pictures, known, .. } = gathering;
+        let PictureGathering { pictures, known, .. } = gathering;
         let at = *known.entry((key, camera, board)).or_insert_with(|| {
             let (taken, image) = (taken.clone(), image.clone());
-            pictures.push(Sight { taken, image, camera, board, corners: Vec::new() });
+            pictures.push(BoardSighting { taken, image, camera, board, corners: Vec::new() });
             pictures.len() - 1
         });
         let Some(picture) = pictures.get_mut(at) else { return Ok(()) };
@@ -198,7 +202,7 @@ impl Reader<'_> {
     }
 
     /// Index of the row's camera among those that are known.
-    fn camera(&mut self, row: &Row<'_>, column: Option<usize>) -> Result<usize> {
+    fn camera(&mut self, row: &FileRow<'_>, column: Option<usize>) -> Result<usize> {
         let (cameras, name) = (&self.cameras, row.word(column));
         if let Some(at) = cameras.iter().position(|it| it.name == name) {
             return Ok(at);
@@ -234,9 +238,9 @@ impl Reader<'_> {
 }
 
 /// The corner of a row; `None` if it was not seen.
-fn corner(row: &Row<'_>, columns: &CornerColumns, numbers: &mut Numbers) -> Result<Option<Corner>> {
+fn corner(row: &FileRow<'_>, columns: &CornerColumns, numbers: &mut NumberReader) -> Result<Option<Corner>> {
     let mut number = |column: usize, name: &str| {
-        let raw = row.raw(column);
+        let raw = row.raw_text(column);
         if raw.is_empty() {
             return Ok(None);
         }

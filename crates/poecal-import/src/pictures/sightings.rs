@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-use super::gathering::Sight;
-use crate::read::Reader;
-use crate::table::Table;
+use super::gathering::BoardSighting;
+use crate::read::MeasurementReader;
+use crate::table::FileTable;
 use crate::table::cursor::Cursor;
 use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
 use poecal_fit::input_doubts::picture_sizes::check_sizes;
 use poecal_model::camera::{Corner, FlatView, Picture, guessed_lens, is_flat_sheet};
-use poecal_model::measurement::Source;
+use poecal_model::measurement::RowLocation;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Adds pictures as rows, each with the poses that fit its corners; pictures without such a pose are left out, and reported.
-    pub(crate) fn take_pictures(&mut self, path: &Path, gathered: Vec<Sight>) -> Result<()> {
+    pub(crate) fn take_pictures(&mut self, path: &Path, gathered: Vec<BoardSighting>) -> Result<()> {
         let file = u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let (mut left_out, mut found) = (Vec::new(), 0);
         self.found.data.pictures.cameras.clone_from(&self.cameras);
@@ -32,7 +32,7 @@ impl Reader<'_> {
             let line = one.corners.first().map_or(0, |corner| corner.line);
             let picture = Picture::new(one.camera, one.board, one.image, one.corners);
             let data = &mut self.found.data;
-            let pushed = data.push_picture(&taken.readings, picture, (taken.set, Source { file, line }));
+            let pushed = data.push_picture(&taken.readings, picture, (taken.set, RowLocation { file, line }));
             let refused =
                 |error: Error| ErrorKind::Measurement.error(error.message()).at_line(path, line as usize);
             if let Err(reason) = pushed.map_err(refused)? {
@@ -58,10 +58,10 @@ impl Reader<'_> {
     }
 
     /// Estimates unknown lenses from the corners of flat boards.
-    fn guess_lenses(&mut self, gathered: &[Sight]) -> Result<()> {
+    fn guess_lenses(&mut self, gathered: &[BoardSighting]) -> Result<()> {
         let pictures = &mut self.found.data.pictures;
         for (at, camera) in pictures.cameras.iter_mut().enumerate().filter(|(_, it)| it.is_guessed) {
-            let view = |one: &Sight| -> Option<FlatView> {
+            let view = |one: &BoardSighting| -> Option<FlatView> {
                 let board = pictures.boards.get(one.board).filter(|board| is_flat_sheet(board))?;
                 let of =
                     |corner: &Corner| Some((board.points.get(corner.point as usize)?.xy(), corner.pixel));
@@ -79,7 +79,7 @@ impl Reader<'_> {
     /// Records the interpretation of a file of corners.
     pub(crate) fn understand_pictures(
         &mut self,
-        table: &Table<'_>,
+        table: &FileTable<'_>,
         inputs: &Cursor<'_>,
         (first, rows, own): (usize, usize, Vec<ColumnUnderstanding>),
     ) -> Result<()> {

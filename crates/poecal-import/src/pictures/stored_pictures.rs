@@ -10,7 +10,7 @@ use poecal_storage::text_of;
 
 /// Pictures of a `calibration.json`.
 #[derive(Deserialize)]
-struct Stored {
+struct StoredPictureFile {
     pictures: Option<StoredPictures>,
 }
 
@@ -26,9 +26,9 @@ fn refuse(path: &Path, message: String) -> Error {
 }
 
 /// The pictures of a `calibration.json`.
-fn stored(path: &Path) -> Result<StoredPictures> {
+fn read_stored_pictures(path: &Path) -> Result<StoredPictures> {
     let text = text_of(path, "a calibration.json with pictures")?;
-    let stored: Stored = serde_json::from_str(&text).map_err(|error| {
+    let stored: StoredPictureFile = serde_json::from_str(&text).map_err(|error| {
         refuse(path, format!("found no calibration.json ({error}), expected one with pictures"))
     })?;
     let expected = "found a calibration without pictures, expected one of a session with a camera";
@@ -40,7 +40,7 @@ fn stored(path: &Path) -> Result<StoredPictures> {
 /// # Errors
 /// The file is none, or has no cameras.
 pub(crate) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
-    let cameras: Result<_> = stored(path)?.cameras.iter().map(CameraEntry::camera).collect();
+    let cameras: Result<_> = read_stored_pictures(path)?.cameras.iter().map(CameraEntry::camera).collect();
     cameras.map_err(|error| error.in_file(path))
 }
 
@@ -49,7 +49,7 @@ pub(crate) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
 /// # Errors
 /// The file is none, or has no boards.
 pub(crate) fn stored_boards(path: &Path) -> Result<Vec<Board>> {
-    let boards: Vec<Board> = stored(path)?.boards.iter().map(BoardEntry::board).collect();
+    let boards: Vec<Board> = read_stored_pictures(path)?.boards.iter().map(BoardEntry::board).collect();
     if boards.is_empty() {
         let message = "found a calibration.json without boards, expected one that this version wrote";
         return Err(refuse(path, message.to_owned()));

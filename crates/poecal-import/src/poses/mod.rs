@@ -4,13 +4,13 @@
 //! `samples.rs` reads lists of other programs, `sixteen.rs` matrices in columns, `picture_poses.rs` the target by corners. `pose_readings.rs` finds
 //! other interpretations of the numbers.
 
+pub(crate) mod matrix_columns;
 pub(crate) mod paired_readings;
 pub(crate) mod picture_poses;
 pub(crate) mod pose_columns;
 pub(crate) mod pose_file;
 pub(crate) mod pose_lists;
+pub(crate) mod pose_owner;
 pub(crate) mod pose_readings;
 pub(crate) mod pose_table;
 pub(crate) mod samples;
-pub(crate) mod sixteen;
-pub(crate) mod whose;

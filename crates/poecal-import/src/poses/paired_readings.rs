@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::read::Reader;
+use crate::read::MeasurementReader;
 use poecal_model::measurement::{Clock, Observation};
 use poecal_numerics::error::{ErrorKind, Result};
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Replaces each row that represents a static interval by the mean measurement of the interval.
     pub(crate) fn take_means(&mut self, first: usize) {
         let Some(by_line) = self.readings.as_ref().filter(|it| !it.means.is_empty()) else { return };

@@ -8,11 +8,11 @@ use nalgebra::Vector3;
 use super::pose_file::PoseFile;
 use crate::ReadOptions;
 use crate::pictures::corner_columns::are_corners;
-use crate::pictures::picture_files::Taken;
-use crate::read::Reader;
-use crate::table::Table;
+use crate::pictures::picture_files::PictureConfiguration;
+use crate::read::MeasurementReader;
+use crate::table::FileTable;
 use crate::table::mapping::ColumnMap;
-use crate::table::text::Blocks;
+use crate::table::text::LineBlocks;
 use poecal_arm::lie::{Pose, Screw};
 use poecal_fit::hand_eye::PoseList;
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
@@ -33,8 +33,8 @@ pub(crate) struct PicturePoses {
 /// True if a file has corners in pixels. A file that cannot be read has none here, and is refused later by its expected form.
 pub(crate) fn are_corners_of(path: &Path) -> bool {
     let map = ColumnMap::default();
-    let table =
-        Blocks::open(path, "a file of corners (CSV)").and_then(|blocks| Table::open(path, blocks, &map));
+    let table = LineBlocks::open(path, "a file of corners (CSV)")
+        .and_then(|blocks| FileTable::open(path, blocks, &map));
     table.is_ok_and(|table| are_corners(&table.header, &[], &map).unwrap_or(false))
 }
 
@@ -56,14 +56,14 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
         Pose::identity(),
     )?;
     let map = ColumnMap::default();
-    let mut reader = Reader::new(&stand_in, options, &map);
+    let mut reader = MeasurementReader::new(&stand_in, options, &map);
     reader.taken_as = "poses of the arm";
     for (name, row) in rows {
         let place = (arm.path.clone(), arm.lines.get(row).copied().unwrap_or(1));
-        let taken = Taken { readings: vec![row as f64], set: None, id: String::new(), place };
+        let taken = PictureConfiguration { readings: vec![row as f64], set: None, id: String::new(), place };
         reader.taken.insert(name.clone(), taken);
     }
-    reader.file(path, Blocks::open(path, "a file of corners (CSV)")?)?;
+    reader.file(path, LineBlocks::open(path, "a file of corners (CSV)")?)?;
     let mut found = reader.found;
     found.data.settle_pixels();
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;

@@ -1,11 +1,11 @@
 //! Names of the columns of a list of poses, in controllers, robots, cameras and ROS.
 
-use super::sixteen::matrices;
-pub(crate) use super::whose::Whose;
-use crate::table::conventions::{CONVENTIONS, Convention, OPENCV};
+use super::matrix_columns::matrices;
+pub(crate) use super::pose_owner::PoseOwner;
+use crate::table::conventions::{CONVENTIONS, OPENCV, OrientationConvention};
 use crate::table::header::Header;
 use crate::table::orientation::OrientationForm;
-use crate::table::roles::{Role, plain, without_unit};
+use crate::table::roles::{ColumnRole, plain_letters, without_unit};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
@@ -27,13 +27,13 @@ pub(crate) struct PoseColumns {
     pub(crate) takes_angle_unit: bool,
     /// Interpretation of the columns, in words.
     pub(crate) words: String,
-    pub(crate) whose: Whose,
+    pub(crate) whose: PoseOwner,
 }
 
 /// A column of a pose: its list, if the name states it, and the part of the pose, by its name in conventions.
-struct Part {
+struct PosePartColumn {
     at: usize,
-    whose: Option<Whose>,
+    whose: Option<PoseOwner>,
     key: String,
 }
 
@@ -58,30 +58,31 @@ fn key_of(name: &str) -> Option<String> {
         "w" | "3" => Some('w'),
         _ => None,
     };
-    if let Some((part, axis)) = Role::part(name).and_then(|(part, rest)| Some((part, axis(rest)?))) {
+    if let Some((part, axis)) = ColumnRole::part(name).and_then(|(part, rest)| Some((part, axis(rest)?))) {
         return Some(format!("{part}{axis}"));
     }
     let digits = name.trim_start_matches(['r', 'm', 't', 'h']);
     if name.len() == 3 && digits.len() == 2 && digits.bytes().all(|it| it.is_ascii_digit()) {
         return Some(format!("r{digits}"));
     }
-    let of_place = Role::Place.words().filter_map(|it| name.strip_prefix(it)).find(|it| PLACE.contains(it));
+    let of_place =
+        ColumnRole::Place.words().filter_map(|it| name.strip_prefix(it)).find(|it| PLACE.contains(it));
     let known = of_place.unwrap_or(name);
     let is_known = PLACE.contains(&known) || CONVENTIONS.iter().any(|it| it.has(known));
     is_known.then(|| known.to_owned())
 }
 
 /// The list that a name states, and the part of the pose.
-fn part_of(name: &str) -> Option<(Option<Whose>, String)> {
+fn part_of(name: &str) -> Option<(Option<PoseOwner>, String)> {
     let (name, _) = without_unit(name);
-    let words: Vec<String> = name.split(|it: char| !it.is_alphanumeric()).map(plain).collect();
+    let words: Vec<String> = name.split(|it: char| !it.is_alphanumeric()).map(plain_letters).collect();
     for count in 1..words.len() {
         let (before, rest) = words.split_at(count);
         let rest = rest.strip_prefix(&["pose".to_owned()]).unwrap_or(rest);
         let (before, key) = (before.concat(), key_of(&rest.concat()));
         let whose = match key {
-            Some(_) if Role::OfArm.has(&before) => Some(Whose::Arm),
-            Some(_) if Role::OfTarget.has(&before) => Some(Whose::Target),
+            Some(_) if ColumnRole::OfArm.has(&before) => Some(PoseOwner::Arm),
+            Some(_) if ColumnRole::OfTarget.has(&before) => Some(PoseOwner::Target),
             _ => continue,
         };
         return Some((whose, key?));
@@ -89,16 +90,17 @@ fn part_of(name: &str) -> Option<(Option<Whose>, String)> {
     let all = words.concat();
     // For example `cx, cy, cz` of a camera beside `X, Y, Z`.
     if let Some(axis) = all.strip_prefix('c').filter(|it| PLACE.contains(it)) {
-        return Some((Some(Whose::Target), axis.to_owned()));
+        return Some((Some(PoseOwner::Target), axis.to_owned()));
     }
     let is_target = all.starts_with("rvec") || all.starts_with("tvec");
-    Some((is_target.then_some(Whose::Target), key_of(&all)?))
+    Some((is_target.then_some(PoseOwner::Target), key_of(&all)?))
 }
 
 /// The column that names the rows.
 pub(crate) fn name_column(header: &Header<'_>) -> Option<usize> {
-    let mut names = [Role::Picture, Role::Row, Role::Frame].into_iter().flat_map(Role::words);
-    names.find_map(|name| header.cells.iter().position(|cell| plain(&cell.name) == name))
+    let mut names =
+        [ColumnRole::Picture, ColumnRole::Row, ColumnRole::Frame].into_iter().flat_map(ColumnRole::words);
+    names.find_map(|name| header.cells.iter().position(|cell| plain_letters(&cell.name) == name))
 }
 
 /// A column of texts of this name.
@@ -134,10 +136,10 @@ impl std::str::FromStr for PoseUnits {
 }
 
 /// Columns of a header by their list of poses, except those of joints. `alone` is the list of columns that do not state it, in a file of one list.
-pub(crate) fn found(
+pub(crate) fn find_pose_columns(
     header: &Header<'_>,
     joints: &[String],
-    alone: Option<Whose>,
+    alone: Option<PoseOwner>,
     stated: PoseUnits,
 ) -> Result<Vec<PoseColumns>> {
     let texts = [name_column(header), text_column(header, "point"), text_column(header, "tip")];
@@ -145,17 +147,22 @@ pub(crate) fn found(
     let is_free = |at: usize| !texts.contains(&Some(at)) && !matrices.iter().any(|it| it.0 == at);
     let cells = header.cells.iter().enumerate();
     let cells = cells.filter(|(at, cell)| is_free(*at) && !joints.contains(&cell.name));
-    let mut parts: Vec<Part> = cells
-        .filter_map(|(at, cell)| part_of(&cell.name).map(|(whose, key)| Part { at, whose, key }))
+    let mut parts: Vec<PosePartColumn> = cells
+        .filter_map(|(at, cell)| part_of(&cell.name).map(|(whose, key)| PosePartColumn { at, whose, key }))
         .collect();
-    parts.extend(matrices.iter().map(|(at, whose, key)| Part { at: *at, whose: *whose, key: key.clone() }));
+    parts.extend(matrices.iter().map(|(at, whose, key)| PosePartColumn {
+        at: *at,
+        whose: *whose,
+        key: key.clone(),
+    }));
     let has = |whose| parts.iter().any(|it| it.whose == Some(whose));
-    let is_one = !(has(Whose::Arm) && has(Whose::Target));
+    let is_one = !(has(PoseOwner::Arm) && has(PoseOwner::Target));
     if let Some(whose) = alone.filter(|_| is_one) {
         parts.iter_mut().for_each(|it| it.whose = Some(whose));
     }
     // The elements of a matrix may be numbered from 0.
-    let from_0: Vec<Option<Whose>> = parts.iter().filter(|it| it.key == "r00").map(|it| it.whose).collect();
+    let from_0: Vec<Option<PoseOwner>> =
+        parts.iter().filter(|it| it.key == "r00").map(|it| it.whose).collect();
     for part in parts.iter_mut().filter(|it| from_0.contains(&it.whose)) {
         if let Some(Ok(number)) = part.key.strip_prefix('r').map(str::parse::<u32>) {
             part.key = format!("r{}", number + 11);
@@ -163,8 +170,8 @@ pub(crate) fn found(
     }
     settle(&mut parts);
     let mut lists = Vec::new();
-    for whose in [Whose::Arm, Whose::Target] {
-        let own: Vec<&Part> = parts.iter().filter(|it| it.whose == Some(whose)).collect();
+    for whose in [PoseOwner::Arm, PoseOwner::Target] {
+        let own: Vec<&PosePartColumn> = parts.iter().filter(|it| it.whose == Some(whose)).collect();
         if !own.is_empty() {
             lists.push(columns(header, whose, &own, stated)?);
         }
@@ -173,45 +180,53 @@ pub(crate) fn found(
 }
 
 /// Assigns columns whose names state no list. Makers' letters belong to the arm; others to the list without this part, the arm first.
-fn settle(parts: &mut [Part]) {
-    let is =
-        |it: &Part, whose: Option<Whose>, name: &str| it.whose == whose && it.key.eq_ignore_ascii_case(name);
+fn settle(parts: &mut [PosePartColumn]) {
+    let is = |it: &PosePartColumn, whose: Option<PoseOwner>, name: &str| {
+        it.whose == whose && it.key.eq_ignore_ascii_case(name)
+    };
     let conventions = CONVENTIONS.iter().map(|it| (it.columns, it.is_makers));
     for (columns, is_makers) in conventions.chain([(&PLACE[..], false)]) {
         if !columns.iter().all(|name| parts.iter().any(|it| is(it, None, name))) {
             continue;
         }
-        let is_alike = |it: &Part| it.whose == Some(Whose::Arm) && is_of_place(&it.key) == (columns == PLACE);
+        let is_alike = |it: &PosePartColumn| {
+            it.whose == Some(PoseOwner::Arm) && is_of_place(&it.key) == (columns == PLACE)
+        };
         let is_arms = is_makers || !parts.iter().any(is_alike);
         for part in parts.iter_mut().filter(|it| columns.iter().any(|name| is(it, None, name))) {
-            part.whose = Some(if is_arms { Whose::Arm } else { Whose::Target });
+            part.whose = Some(if is_arms { PoseOwner::Arm } else { PoseOwner::Target });
         }
     }
     // A quaternion may have been assigned first, beside the arm's own angles and the position of the camera.
-    let has_all = |whose: Whose, it: &Convention| {
+    let has_all = |whose: PoseOwner, it: &OrientationConvention| {
         it.columns.iter().all(|name| parts.iter().any(|part| is(part, Some(whose), name)))
     };
-    let is_targets = CONVENTIONS.iter().any(|it| it.is_makers && has_all(Whose::Arm, it))
-        && !CONVENTIONS.iter().any(|it| has_all(Whose::Target, it));
+    let is_targets = CONVENTIONS.iter().any(|it| it.is_makers && has_all(PoseOwner::Arm, it))
+        && !CONVENTIONS.iter().any(|it| has_all(PoseOwner::Target, it));
     for part in parts {
-        let is_arms = part.whose != Some(Whose::Target);
-        let is_quaternion = part.whose == Some(Whose::Arm) && part.key.starts_with('q');
+        let is_arms = part.whose != Some(PoseOwner::Target);
+        let is_quaternion = part.whose == Some(PoseOwner::Arm) && part.key.starts_with('q');
         if is_arms {
-            part.whose = Some(if is_targets && is_quaternion { Whose::Target } else { Whose::Arm });
+            part.whose = Some(if is_targets && is_quaternion { PoseOwner::Target } else { PoseOwner::Arm });
         }
     }
 }
 
 /// Name of a list in messages.
-pub(crate) fn list_words(whose: Whose) -> &'static str {
+pub(crate) fn list_words(whose: PoseOwner) -> &'static str {
     match whose {
-        Whose::Arm => "the arm",
-        Whose::Target => "the target",
+        PoseOwner::Arm => "the arm",
+        PoseOwner::Target => "the target",
     }
 }
 
 /// The columns of one list by their parts.
-fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits) -> Result<PoseColumns> {
+fn columns(
+    header: &Header<'_>,
+    whose: PoseOwner,
+    parts: &[&PosePartColumn],
+    stated: PoseUnits,
+) -> Result<PoseColumns> {
     let find = |name: &&str| parts.iter().find(|it| it.key.eq_ignore_ascii_case(name)).map(|it| it.at);
     let all = |names: &[&str]| names.iter().map(find).collect::<Option<Vec<usize>>>();
     let who = list_words(whose);
@@ -232,7 +247,7 @@ fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits
             "orientation",
             "qx, qy, qz, qw, or A, B, C (KUKA), W, P, R (FANUC), O, A, T (Kawasaki), A, E, R (Comau), U, V, W (Epson), intrinsic_x, intrinsic_y, \
              intrinsic_z (Stäubli), rx, ry, rz (rotation vector), q1 to q4 (ABB), roll, pitch, yaw, rvec_x, rvec_y, rvec_z (OpenCV) or r11 to r33",
-            if whose == Whose::Target { PLACES_ALONE } else { "" },
+            if whose == PoseOwner::Target { PLACES_ALONE } else { "" },
         );
     };
     let (length, angle) = convention.usual.unwrap_or(("m", "rad"));

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 
 use super::pose_columns::{
-    NumberColumn, PoseColumns, PoseUnits, Whose, found, list_words, name_column, text_column,
+    NumberColumn, PoseColumns, PoseOwner, PoseUnits, find_pose_columns, list_words, name_column, text_column,
 };
-use super::pose_readings::others;
+use super::pose_readings::other_readings;
 use super::samples;
 use crate::read::joints::read_joints;
 use crate::table::mapping::ColumnMap;
-use crate::table::number::Numbers;
-use crate::table::text::Blocks;
-use crate::table::{Row, Table};
+use crate::table::number::NumberReader;
+use crate::table::text::LineBlocks;
+use crate::table::{FileRow, FileTable};
 use crate::{LARGEST_NUMBER, ReadOptions};
 use poecal_arm::lie::Pose;
 use poecal_fit::hand_eye::PoseList;
@@ -26,7 +26,7 @@ use poecal_numerics::unit::Unit;
 const LARGEST_ANGLE: f64 = 2.01 * std::f64::consts::PI;
 
 /// One list of a file, while it is read.
-struct Rows {
+struct PoseListRows {
     columns: PoseColumns,
     /// Numbers of the orientations, radians or dimensionless.
     numbers: Vec<Vec<f64>>,
@@ -34,8 +34,8 @@ struct Rows {
 }
 
 /// One list of a file.
-pub(crate) struct List {
-    pub(crate) whose: Whose,
+pub(crate) struct PoseFileList {
+    pub(crate) whose: PoseOwner,
     pub(crate) poses: PoseList,
     /// Interpretation of its columns.
     pub(crate) words: String,
@@ -45,7 +45,7 @@ pub(crate) struct List {
 #[derive(Default)]
 pub(crate) struct PoseFile {
     pub(crate) path: PathBuf,
-    pub(crate) lists: Vec<List>,
+    pub(crate) lists: Vec<PoseFileList>,
     pub(crate) lines: Vec<usize>,
     pub(crate) names: Option<Vec<String>>,
     pub(crate) points: Vec<String>,
@@ -57,7 +57,7 @@ pub(crate) struct PoseFile {
 }
 
 /// The error of a file without a list of poses.
-pub(crate) fn no_list<T>(path: &Path, whose: Whose) -> Result<T> {
+pub(crate) fn no_list<T>(path: &Path, whose: PoseOwner) -> Result<T> {
     Err(ErrorKind::Measurement
         .error(format!(
             "found no poses of {}, expected columns such as flange_x, flange_y, flange_z, flange_qx … flange_qw for the arm and target_x … target_qw \
@@ -97,7 +97,7 @@ impl PoseFile {
     }
 
     /// Takes one of the two lists.
-    pub(crate) fn take(&mut self, whose: Whose) -> Result<List> {
+    pub(crate) fn take(&mut self, whose: PoseOwner) -> Result<PoseFileList> {
         match self.lists.iter().position(|list| list.whose == whose) {
             Some(at) => Ok(self.lists.swap_remove(at)),
             None => no_list(&self.path, whose),
@@ -109,7 +109,7 @@ impl PoseFile {
 /// readings.
 pub(crate) fn read_poses(
     path: &Path,
-    alone: Option<Whose>,
+    alone: Option<PoseOwner>,
     stated: PoseUnits,
     robot: Option<&Robot>,
 ) -> Result<PoseFile> {
@@ -117,22 +117,22 @@ pub(crate) fn read_poses(
     let expected = "a file of poses (CSV)";
     let blocks = match samples::table(path)? {
         Some(made) => made.blocks(path, expected),
-        None => Blocks::open(path, expected)?,
+        None => LineBlocks::open(path, expected)?,
     };
-    let mut table = Table::open(path, blocks, &map)?;
+    let mut table = FileTable::open(path, blocks, &map)?;
     let joints = robot.map(Robot::reading_names).unwrap_or_default();
-    let by_joints = robot.filter(|_| alone != Some(Whose::Target));
-    let alone = if by_joints.is_some() { Some(Whose::Target) } else { alone };
-    let lists = found(&table.header, &joints, alone, stated)?;
+    let by_joints = robot.filter(|_| alone != Some(PoseOwner::Target));
+    let alone = if by_joints.is_some() { Some(PoseOwner::Target) } else { alone };
+    let lists = find_pose_columns(&table.header, &joints, alone, stated)?;
     if lists.is_empty() && by_joints.is_none() {
-        return no_list(path, alone.unwrap_or(Whose::Arm));
+        return no_list(path, alone.unwrap_or(PoseOwner::Arm));
     }
-    let rows = |columns| Rows { columns, numbers: Vec::new(), poses: Vec::new() };
-    let mut lists: Vec<Rows> = lists.into_iter().map(rows).collect();
+    let rows = |columns| PoseListRows { columns, numbers: Vec::new(), poses: Vec::new() };
+    let mut lists: Vec<PoseListRows> = lists.into_iter().map(rows).collect();
     let name = name_column(&table.header);
     let [point, tip] = ["point", "tip"].map(|it| text_column(&table.header, it));
     let mut file = PoseFile { path: path.to_owned(), names: name.map(|_| Vec::new()), ..PoseFile::default() };
-    let mut numbers = Numbers::new(None);
+    let mut numbers = NumberReader::new(None);
     table.some_rows("a row for each pose", |row| {
         for list in &mut lists {
             list.add(row, &mut numbers)?;
@@ -143,29 +143,29 @@ pub(crate) fn read_poses(
         file.tips.push(row.word(tip));
         Ok(())
     })?;
-    file.lists = lists.into_iter().map(Rows::list).collect();
+    file.lists = lists.into_iter().map(PoseListRows::list).collect();
     file.sha256 = table.sha256();
     if let Some(robot) = by_joints {
         let read = read_joints(path, robot, &ReadOptions::default())?;
         let poses: Vec<Pose> = robot.forward_kinematics_of(&read.readings).collect();
         let words =
             format!("the arm: joint readings, by which `{}` is where the model has it", robot.tip_name);
-        file.lists.push(List { whose: Whose::Arm, poses: poses.into(), words });
+        file.lists.push(PoseFileList { whose: PoseOwner::Arm, poses: poses.into(), words });
         (file.joints, file.warnings) = (read.readings, read.warnings);
     }
     Ok(file)
 }
 
-impl Rows {
+impl PoseListRows {
     /// The poses, with other interpretations of their numbers.
-    fn list(self) -> List {
-        let others = others(&self.columns, &self.poses, &self.numbers);
+    fn list(self) -> PoseFileList {
+        let others = other_readings(&self.columns, &self.poses, &self.numbers);
         let poses = PoseList { others, ..self.poses.into() };
-        List { whose: self.columns.whose, poses, words: self.columns.words }
+        PoseFileList { whose: self.columns.whose, poses, words: self.columns.words }
     }
 
     /// Adds the pose of a row.
-    fn add(&mut self, row: &Row<'_>, numbers: &mut Numbers) -> Result<()> {
+    fn add(&mut self, row: &FileRow<'_>, numbers: &mut NumberReader) -> Result<()> {
         let PoseColumns { position, orientation, form, .. } = &self.columns;
         let mut number =
             |it: &NumberColumn| Ok(it.unit.to_si(row.number(it.at, numbers, format_args!(""))?));

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::picture_poses::{are_corners_of, poses_of_pictures};
-use super::pose_columns::{PoseUnits, Whose};
-use super::pose_file::{List, PoseFile, read_poses};
+use super::pose_columns::{PoseOwner, PoseUnits};
+use super::pose_file::{PoseFile, PoseFileList, read_poses};
 use crate::ReadOptions;
-use crate::table::picture_names::Partners;
+use crate::table::picture_names::PicturePartners;
 use poecal_fit::hand_eye::{PoseList, Touches};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -64,14 +64,14 @@ pub struct FlangePoses {
 /// [`ErrorKind::File`] if a file cannot be read; [`ErrorKind::Syntax`], [`ErrorKind::Measurement`] and [`ErrorKind::Unit`] if the content is no
 /// list of poses, with its position.
 pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<PosePairs> {
-    let read = |path: &Path, alone: Option<Whose>| read_poses(path, alone, source.units, source.robot);
+    let read = |path: &Path, alone: Option<PoseOwner>| read_poses(path, alone, source.units, source.robot);
     match paths {
         [one] => side_by_side(read(one, None)?),
         [first, second] => {
             match [first, second].map(|path| are_corners_of(path)) {
-                [false, false] => joined(read(first, Some(Whose::Arm))?, read(second, Some(Whose::Target))?),
-                [false, true] => with_pictures(read(first, Some(Whose::Arm))?, second, source.pictures),
-                [true, false] => with_pictures(read(second, Some(Whose::Arm))?, first, source.pictures),
+                [false, false] => join_files(read(first, Some(PoseOwner::Arm))?, read(second, Some(PoseOwner::Target))?),
+                [false, true] => with_pictures(read(first, Some(PoseOwner::Arm))?, second, source.pictures),
+                [true, false] => with_pictures(read(second, Some(PoseOwner::Arm))?, first, source.pictures),
                 [true, true] => Err(ErrorKind::Measurement
                     .error("found corners in pixels in both files, expected the arm's poses in one of them")
                     .in_file(first)),
@@ -89,8 +89,8 @@ pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<Pos
 /// # Errors
 /// Those of [`read_pose_pairs`].
 pub fn read_flange_poses(path: &Path, units: PoseUnits, robot: Option<&Robot>) -> Result<FlangePoses> {
-    let mut file = read_poses(path, Some(Whose::Arm), units, robot)?;
-    let list = file.take(Whose::Arm)?;
+    let mut file = read_poses(path, Some(PoseOwner::Arm), units, robot)?;
+    let list = file.take(PoseOwner::Arm)?;
     Ok(FlangePoses {
         understood: vec![list.words],
         names: file.row_names(),
@@ -106,7 +106,7 @@ fn checksums<'a>(files: impl IntoIterator<Item = &'a PoseFile>) -> BTreeMap<Stri
 }
 
 /// The arm's poses in some rows of its file, each with the target's pose there.
-fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, String)) -> PosePairs {
+fn pair_poses(arm: &PoseFile, flange: PoseFileList, rows: &[usize], target: (PoseList, String)) -> PosePairs {
     let names = arm.row_names();
     let width = arm.joints.len() / arm.lines.len().max(1);
     let joints = |row: &usize| arm.joints.get(row * width..(row + 1) * width).unwrap_or_default();
@@ -121,13 +121,13 @@ fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, Strin
 }
 
 fn side_by_side(mut file: PoseFile) -> Result<PosePairs> {
-    let (flange, target) = (file.take(Whose::Arm)?, file.take(Whose::Target)?);
+    let (flange, target) = (file.take(PoseOwner::Arm)?, file.take(PoseOwner::Target)?);
     let rows: Vec<usize> = (0..file.lines.len()).collect();
-    let pairs = paired(&file, flange, &rows, (target.poses, target.words));
+    let pairs = pair_poses(&file, flange, &rows, (target.poses, target.words));
     Ok(PosePairs { sha256: checksums([&file]), warnings: file.warnings, ..pairs })
 }
 
-fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
+fn join_files(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let mut warnings = std::mem::take(&mut first.warnings);
     let rows: Vec<(usize, usize)> = if first.names.is_some() && second.names.is_some() {
         by_name(&first, &second, &mut warnings)?
@@ -145,21 +145,21 @@ fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let sha256 = checksums([&first, &second]);
     let (left, right): (Vec<usize>, Vec<usize>) = rows.into_iter().unzip();
     // The files may be named in the other order.
-    let is_turned = first.lists.iter().all(|list| list.whose == Whose::Target);
+    let is_turned = first.lists.iter().all(|list| list.whose == PoseOwner::Target);
     let [mut arm, mut seen] = if is_turned { [second, first] } else { [first, second] };
     let [arm_rows, seen_rows] = if is_turned { [right, left] } else { [left, right] };
-    let (flange, target) = (arm.take(Whose::Arm)?, seen.take(Whose::Target)?);
-    let pairs = paired(&arm, flange, &arm_rows, (target.poses.of_rows(&seen_rows), target.words));
+    let (flange, target) = (arm.take(PoseOwner::Arm)?, seen.take(PoseOwner::Target)?);
+    let pairs = pair_poses(&arm, flange, &arm_rows, (target.poses.of_rows(&seen_rows), target.words));
     Ok(PosePairs { warnings, sha256, ..pairs })
 }
 
 /// Poses of an arm, and the corners of pictures that were taken there.
 fn with_pictures(mut arm: PoseFile, corners: &Path, options: &ReadOptions) -> Result<PosePairs> {
     let pictures = poses_of_pictures(corners, &arm, options)?;
-    let flange = arm.take(Whose::Arm)?;
+    let flange = arm.take(PoseOwner::Arm)?;
     let mut sha256 = checksums([&arm]);
     sha256.extend(pictures.sha256);
-    let pairs = paired(&arm, flange, &pictures.rows, (pictures.poses, pictures.words));
+    let pairs = pair_poses(&arm, flange, &pictures.rows, (pictures.poses, pictures.words));
     let warnings = arm.warnings.into_iter().chain(pictures.warnings).collect();
     Ok(PosePairs { warnings, sha256, ..pairs })
 }
@@ -169,7 +169,7 @@ fn by_name(first: &PoseFile, second: &PoseFile, warnings: &mut Vec<String>) -> R
     let one = first.rows_by_name()?.unwrap_or_default();
     let other = second.rows_by_name()?.unwrap_or_default();
     let names = |rows: &BTreeMap<_, usize>| rows.keys().copied().collect::<BTreeSet<&String>>();
-    let partners = Partners::new(&names(&one), names(&other));
+    let partners = PicturePartners::new(&names(&one), names(&other));
     let pair = |(row, name)| Some((row, *other.get(partners.partner(name)?)?));
     let rows: Vec<(usize, usize)> = first.names.iter().flatten().enumerate().filter_map(pair).collect();
     if rows.is_empty() {

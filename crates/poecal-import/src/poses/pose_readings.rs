@@ -1,13 +1,17 @@
 //! Other interpretations of the numbers of a list of poses, to name the mistake if one of them fits.
 
-use super::pose_columns::{PoseColumns, Whose, list_words};
+use super::pose_columns::{PoseColumns, PoseOwner, list_words};
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::Pose;
 use poecal_arm::lie::angles::Angles;
-use poecal_fit::hand_eye::Reading;
+use poecal_fit::hand_eye::ListReading;
 
 /// Other interpretations of the orientations of a list.
-pub(crate) fn others(columns: &PoseColumns, poses: &[Pose], numbers: &[Vec<f64>]) -> Vec<Reading> {
+pub(crate) fn other_readings(
+    columns: &PoseColumns,
+    poses: &[Pose],
+    numbers: &[Vec<f64>],
+) -> Vec<ListReading> {
     let read = |form: OrientationForm, factor: f64| -> Option<Vec<Pose>> {
         let rows = numbers.iter().zip(poses);
         rows.map(|(numbers, pose)| {
@@ -16,15 +20,16 @@ pub(crate) fn others(columns: &PoseColumns, poses: &[Pose], numbers: &[Vec<f64>]
         })
         .collect()
     };
-    let reading = |(form, factor, advice): Way| Some(Reading { advice, poses: read(form, factor)? });
+    let reading =
+        |(form, factor, advice): PoseReadingForm| Some(ListReading { advice, poses: read(form, factor)? });
     ways(columns).into_iter().filter_map(reading).collect()
 }
 
 /// An interpretation: its form, the factor of its numbers, and the remedy.
-type Way = (OrientationForm, f64, String);
+type PoseReadingForm = (OrientationForm, f64, String);
 
 /// Other units and conventions of angles; other orders of quaternions and matrices.
-fn ways(columns: &PoseColumns) -> Vec<Way> {
+fn ways(columns: &PoseColumns) -> Vec<PoseReadingForm> {
     let who = list_words(columns.whose);
     let (form, advice) = match columns.form {
         OrientationForm::QuaternionXyzw => (
@@ -48,15 +53,15 @@ fn ways(columns: &PoseColumns) -> Vec<Way> {
     vec![(form, 1.0, advice)]
 }
 
-fn ways_of_angles(columns: &PoseColumns, angles: Angles, who: &str) -> Vec<Way> {
+fn ways_of_angles(columns: &PoseColumns, angles: Angles, who: &str) -> Vec<PoseReadingForm> {
     let degree = std::f64::consts::PI / 180.0;
     let symbol = columns.orientation.first().map_or("rad", |it| it.unit.symbol());
     let (other, short, factor) =
         if symbol == "deg" { ("radians", "rad", 1.0 / degree) } else { ("degrees", "deg", degree) };
     let unit = format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns");
     let before = match columns.whose {
-        Whose::Arm => "",
-        Whose::Target => ", each behind `target_`",
+        PoseOwner::Arm => "",
+        PoseOwner::Target => ", each behind `target_`",
     };
     let conventions = [
         (Angles::ZYX, "angles about z, y, x as turned (KUKA)", "A, B, C"),

@@ -4,17 +4,17 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::whose::{Whose, whose_of};
-use crate::instruments::{Column, Made, Value};
+use super::pose_owner::{PoseOwner, whose_of};
+use crate::instruments::{CellValue, MadeTable, TableColumn};
 use crate::table::configurations::is_folder;
 use crate::table::picture_names::number_at_end;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::folder;
 use poecal_storage::hashes::sha256_of;
-use poecal_storage::limits::Limit;
-use poecal_storage::source::unreadable;
+use poecal_storage::limits::ResourceLimit;
+use poecal_storage::source::unreadable_error;
 use poecal_storage::source_text::read_up_to;
-use poecal_storage::yaml_tree::{Node, NodeKind, documents};
+use poecal_storage::yaml_tree::{NodeKind, YamlNode, documents};
 
 const EXPECTED: &str = "samples of a hand-eye calibration: poses of the arm (effector_wrt_world, robot) and of the target (object_wrt_sensor, tracking), or a \
                         folder with a pose in each file";
@@ -34,8 +34,8 @@ const VECTOR: [&str; 6] = ["x[m]", "y[m]", "z[m]", "rvec_x[rad]", "rvec_y[rad]",
 const NOT_OF_THE_ARM: [&str; 5] = ["F_T_", "NE_T_", "EE_T_", "O_T_EE_c", "O_T_EE_d"];
 
 /// A pose in a file.
-struct Sample {
-    whose: Option<Whose>,
+struct PoseSample {
+    whose: Option<PoseOwner>,
     columns: &'static [&'static str],
     numbers: Vec<f64>,
     /// True if lengths are millimetres.
@@ -48,13 +48,13 @@ struct Sample {
 /// Poses that were found so far.
 #[derive(Default)]
 struct Samples {
-    found: Vec<Sample>,
+    found: Vec<PoseSample>,
     /// Entries of lists so far.
     entries: u64,
 }
 
 /// The table of a folder or a file of samples; `None` for a file in another form.
-pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
+pub(crate) fn table(path: &Path) -> Result<Option<MadeTable>> {
     let ends = |path: &Path, all: &[&str]| {
         let ending = path.extension().and_then(|it| it.to_str()).unwrap_or_default();
         all.iter().any(|it| ending.eq_ignore_ascii_case(it))
@@ -65,11 +65,11 @@ pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
             number_at_end(name).is_some() && (ends(Path::new(name), &TREES) || ends(Path::new(name), &TEXTS))
         };
         let (mut names, _) =
-            folder::files(path, is_wanted).map_err(|error| unreadable(path, &error, EXPECTED))?;
+            folder::files(path, is_wanted).map_err(|error| unreadable_error(path, &error, EXPECTED))?;
         names.sort_by_cached_key(|name| (number_at_end(name), name.clone()));
         for name in names {
             let own = path.join(&name);
-            let text = read_up_to(&own, EXPECTED, Limit::Settings)?;
+            let text = read_up_to(&own, EXPECTED, ResourceLimit::Settings)?;
             let before = samples.found.len();
             if ends(&own, &TREES) {
                 for document in documents(&text, &own, EXPECTED)? {
@@ -79,7 +79,7 @@ pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
                 let all = text.split(|it: char| it.is_whitespace() || matches!(it, ',' | ';' | '[' | ']'));
                 let numbers =
                     all.filter(|it| !it.is_empty()).map(|it| it.parse().ok()).collect::<Option<Vec<f64>>>();
-                samples.found.extend(numbers.and_then(|it| Sample::matrix(it, whose_of(&name), 1)));
+                samples.found.extend(numbers.and_then(|it| PoseSample::matrix(it, whose_of(&name), 1)));
             }
             if samples.found.len() != before + 1 {
                 let message = format!(
@@ -92,12 +92,12 @@ pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
             whole.push_str(&text);
         }
     } else if ends(path, &TREES) {
-        whole = read_up_to(path, EXPECTED, Limit::Table)?;
+        whole = read_up_to(path, EXPECTED, ResourceLimit::Table)?;
         documents(&whole, path, EXPECTED)?.iter().for_each(|it| samples.walk(it, None));
     } else {
         return Ok(None);
     }
-    let made = made(&samples.found, is_folder(path)).map_err(|message| refuse(path, message))?;
+    let made = make_table(&samples.found, is_folder(path)).map_err(|message| refuse(path, message))?;
     Ok(Some(made.of_file("samples of a hand-eye calibration", Some(sha256_of(&whole)))))
 }
 
@@ -106,7 +106,7 @@ fn refuse(path: &Path, message: String) -> Error {
 }
 
 /// The numbers of a list, or of lists in it.
-fn numbers(node: &Node) -> Option<Vec<f64>> {
+fn numbers(node: &YamlNode) -> Option<Vec<f64>> {
     let inner: Option<Vec<Vec<f64>>> = node
         .list()?
         .iter()
@@ -117,8 +117,8 @@ fn numbers(node: &Node) -> Option<Vec<f64>> {
 
 impl Samples {
     /// Takes the poses below a node.
-    fn walk(&mut self, node: &Node, whose: Option<Whose>) {
-        if let Some(sample) = Sample::new(node, whose) {
+    fn walk(&mut self, node: &YamlNode, whose: Option<PoseOwner>) {
+        if let Some(sample) = PoseSample::new(node, whose) {
             return self.found.push(sample);
         }
         match &node.kind {
@@ -133,7 +133,7 @@ impl Samples {
     }
 
     /// Takes an entry of a list; the two poses whose keys are in it belong together.
-    fn entry(&mut self, node: &Node, whose: Option<Whose>) {
+    fn entry(&mut self, node: &YamlNode, whose: Option<PoseOwner>) {
         let before = self.found.len();
         self.walk(node, whose);
         self.entries += 1;
@@ -143,32 +143,35 @@ impl Samples {
     }
 }
 
-impl Sample {
+impl PoseSample {
     /// The pose of a node, if it is one.
-    fn new(node: &Node, whose: Option<Whose>) -> Option<Self> {
+    fn new(node: &YamlNode, whose: Option<PoseOwner>) -> Option<Self> {
         let part = |keys: [&str; 2]| keys.into_iter().find_map(|key| node.get(key));
         let Some((place, turn)) = part(PLACES).zip(part(TURNS)) else {
             if let Some(matrix) = node.get("FloatMatrix").and_then(|it| it.get("Data")) {
-                return Some(Sample { in_mm: true, ..Sample::matrix(numbers(matrix)?, whose, node.line)? });
+                return Some(PoseSample {
+                    in_mm: true,
+                    ..PoseSample::matrix(numbers(matrix)?, whose, node.line)?
+                });
             }
             // The node has OpenCV's or ViSP's matrix, or the numbers alone.
             let numbers = numbers(node.get("data").unwrap_or(node))?;
             let columns: &[&str] = if numbers.len() == VECTOR.len() && node.get("rows").is_some() {
                 &VECTOR
             } else {
-                return Sample::matrix(numbers, whose, node.line);
+                return PoseSample::matrix(numbers, whose, node.line);
             };
-            return Some(Sample { whose, columns, numbers, in_mm: false, line: node.line, sample: None });
+            return Some(PoseSample { whose, columns, numbers, in_mm: false, line: node.line, sample: None });
         };
-        let parts = |of: &Node, keys: &[&str]| -> Option<Vec<f64>> {
+        let parts = |of: &YamlNode, keys: &[&str]| -> Option<Vec<f64>> {
             keys.iter().map(|key| of.get(key)?.text()?.parse().ok()).collect()
         };
         let numbers = [parts(place, &["x", "y", "z"])?, parts(turn, &["x", "y", "z", "w"])?].concat();
-        Some(Sample { whose, columns: &QUATERNION, numbers, in_mm: false, line: node.line, sample: None })
+        Some(PoseSample { whose, columns: &QUATERNION, numbers, in_mm: false, line: node.line, sample: None })
     }
 
     /// The pose of sixteen numbers, row by row, or column by column if the position is at the end.
-    fn matrix(numbers: Vec<f64>, whose: Option<Whose>, line: usize) -> Option<Self> {
+    fn matrix(numbers: Vec<f64>, whose: Option<PoseOwner>, line: usize) -> Option<Self> {
         let all: [f64; 16] = numbers.try_into().ok()?;
         let row = |at: usize| [all[at], all[at + 4], all[at + 8]];
         let numbers: Vec<f64> = match (&all[12..], row(3)) {
@@ -178,7 +181,7 @@ impl Sample {
             }
             _ => return None,
         };
-        (all[15] == 1.0).then_some(Sample {
+        (all[15] == 1.0).then_some(PoseSample {
             whose,
             columns: &MATRIX,
             numbers,
@@ -189,23 +192,23 @@ impl Sample {
     }
 
     /// The names of its columns.
-    fn columns(&self) -> impl Iterator<Item = Column> {
+    fn columns(&self) -> impl Iterator<Item = TableColumn> {
         let before = match self.whose {
             None => "",
-            Some(Whose::Arm) => "flange_",
-            Some(Whose::Target) => "target_",
+            Some(PoseOwner::Arm) => "flange_",
+            Some(PoseOwner::Target) => "target_",
         };
         let unit = if self.in_mm { "[mm]" } else { "[m]" };
-        self.columns.iter().map(move |it| Column::from(format!("{before}{}", it.replace("[m]", unit))))
+        self.columns.iter().map(move |it| TableColumn::from(format!("{before}{}", it.replace("[m]", unit))))
     }
 }
 
 /// The table of poses: those of arm and target side by side, by the numbers of their files or in their order.
-fn made(samples: &[Sample], are_files: bool) -> std::result::Result<Made, String> {
-    let mut rows: BTreeMap<u64, Vec<&Sample>> = BTreeMap::new();
+fn make_table(samples: &[PoseSample], are_files: bool) -> std::result::Result<MadeTable, String> {
+    let mut rows: BTreeMap<u64, Vec<&PoseSample>> = BTreeMap::new();
     let mut counts = [0_u64; 3];
     for sample in samples {
-        let count = &mut counts[sample.whose.map_or(2, |it| usize::from(it == Whose::Target))];
+        let count = &mut counts[sample.whose.map_or(2, |it| usize::from(it == PoseOwner::Target))];
         rows.entry(sample.sample.unwrap_or(*count)).or_default().push(sample);
         *count += 1;
     }
@@ -215,7 +218,7 @@ fn made(samples: &[Sample], are_files: bool) -> std::result::Result<Made, String
             "found no pose with a place and a quaternion, and none of sixteen numbers, expected {EXPECTED}"
         ));
     };
-    let is_alike = |row: &[&Sample]| {
+    let is_alike = |row: &[&PoseSample]| {
         row.len() == first.len()
             && row.iter().zip(row.iter().skip(1)).all(|(one, next)| one.whose < next.whose)
             && row.iter().zip(first).all(|(one, other)| {
@@ -229,13 +232,13 @@ fn made(samples: &[Sample], are_files: bool) -> std::result::Result<Made, String
              form, {EXPECTED}"
         ));
     }
-    let names = are_files.then(|| Column::from("image"));
-    let mut made = Made::new(1, names.into_iter().chain(first.iter().flat_map(|it| it.columns())));
+    let names = are_files.then(|| TableColumn::from("image"));
+    let mut made = MadeTable::new(1, names.into_iter().chain(first.iter().flat_map(|it| it.columns())));
     for (number, row) in &rows {
         let name = number.to_string();
-        let numbers = row.iter().flat_map(|it| it.numbers.iter().copied().map(Value::Number));
+        let numbers = row.iter().flat_map(|it| it.numbers.iter().copied().map(CellValue::Number));
         let line = row.first().map_or(1, |it| it.line);
-        made.row(line, are_files.then_some(Value::Text(&name)).into_iter().chain(numbers));
+        made.row(line, are_files.then_some(CellValue::Text(&name)).into_iter().chain(numbers));
     }
     made.say(format!(
         "{} poses, {}",

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use crate::ReadOptions;
-use crate::instruments::Opening;
-use crate::pictures::taken::set_of;
-use crate::table::Table;
+use crate::instruments::OpeningContext;
+use crate::pictures::append_row::set_of;
+use crate::table::FileTable;
 use crate::table::configurations::in_its_file;
 use crate::table::cursor::Cursor;
 use crate::table::layout::{ColumnLayout, SetRule};
@@ -13,8 +13,8 @@ use crate::table::mapping::ColumnMap;
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
-use poecal_numerics::text::visible;
-use poecal_plan::plan::{PlannedRow, RowPart};
+use poecal_numerics::text::escape_invisible;
+use poecal_plan::plan::{PlannedRow, RowPurpose};
 use poecal_storage::document;
 
 /// Configurations from a file.
@@ -39,12 +39,12 @@ pub struct JointsTable {
 impl JointsTable {
     /// The rows as those of a planned list; a row that states no set is a training row.
     #[must_use]
-    pub fn planned(&self) -> Vec<PlannedRow> {
+    pub fn planned_rows(&self) -> Vec<PlannedRow> {
         let part = |row: usize| match self.sets.get(row) {
-            Some(Some(Set::HeldOut)) => RowPart::Judge,
-            _ => RowPart::Fit,
+            Some(Some(Set::HeldOut)) => RowPurpose::Judge,
+            _ => RowPurpose::Fit,
         };
-        let parts: Vec<RowPart> = (0..self.rows).map(part).collect();
+        let parts: Vec<RowPurpose> = (0..self.rows).map(part).collect();
         PlannedRow::of_list(&self.readings, self.readings.len() / self.rows.max(1), &parts)
     }
 }
@@ -58,15 +58,16 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
     let no_map = ColumnMap::default();
     let map = options.mapping.as_ref().unwrap_or(&no_map);
     let rows = |blocks| {
-        let mut table = Table::open(path, blocks, map)?;
+        let mut table = FileTable::open(path, blocks, map)?;
         let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
         rows_of(&mut table, &mut Cursor::new(layout, robot, map.decimal))
     };
     let joints = document::reading(|| {
-        let blocks = Opening { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
+        let blocks =
+            OpeningContext { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
         rows(blocks).map_err(|error| in_its_file(error, path))
     })?;
-    let warnings = joints.warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    let warnings = joints.warnings.iter().map(|warning| escape_invisible(warning).into_owned()).collect();
     Ok(JointsTable { warnings, ..joints })
 }
 
@@ -85,7 +86,7 @@ pub fn parse_joints(
 }
 
 /// All rows of a table of joint readings.
-pub(crate) fn rows_of(table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<JointsTable> {
+pub(crate) fn rows_of(table: &mut FileTable<'_>, cursor: &mut Cursor<'_>) -> Result<JointsTable> {
     let mut joints = JointsTable::default();
     joints.rows = table.some_rows("at least one row of joint readings", |row| {
         joints.readings.extend_from_slice(cursor.read_joints(row)?);

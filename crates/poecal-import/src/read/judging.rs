@@ -1,14 +1,14 @@
 //! Judges the data that were read: units, spread, and missing components.
 
-use super::Reader;
-use crate::table::Table;
+use super::MeasurementReader;
+use crate::table::FileTable;
 use crate::table::cursor::Cursor;
 use poecal_fit::input_doubts::{lengths, spread};
 use poecal_numerics::error::Result;
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Judges the scale of the readings and of the measurements.
-    pub(super) fn judge(&mut self, table: &Table<'_>, cursor: &Cursor<'_>, first: usize) -> Result<()> {
+    pub(super) fn judge(&mut self, table: &FileTable<'_>, cursor: &Cursor<'_>, first: usize) -> Result<()> {
         let header = &table.header;
         self.found.warnings.extend(cursor.joint_warnings(header)?);
         cursor.check_orientations(header)?;
@@ -25,7 +25,7 @@ impl Reader<'_> {
     /// Refuses positions of the rows from `first` on that only another unit explains.
     pub(super) fn refuse_far_positions(
         &self,
-        table: &Table<'_>,
+        table: &FileTable<'_>,
         cursor: &Cursor<'_>,
         slides_m: f64,
         first: usize,

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::ReadOptions;
-use crate::instruments::Opening;
-use crate::table::Table;
+use crate::instruments::OpeningContext;
+use crate::table::FileTable;
 use crate::table::mapping::ColumnMap;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -32,8 +32,8 @@ pub fn read_labels(
 ) -> Result<LabelColumns> {
     let no_map = ColumnMap::default();
     document::reading(|| {
-        let blocks = Opening { robot, options }.blocks(path, "a file of measurements (CSV)")?;
-        let mut table = Table::open(path, blocks, options.mapping.as_ref().unwrap_or(&no_map))?;
+        let blocks = OpeningContext { robot, options }.blocks(path, "a file of measurements (CSV)")?;
+        let mut table = FileTable::open(path, blocks, options.mapping.as_ref().unwrap_or(&no_map))?;
         let at = |name: &&str| table.header.cells.iter().position(|it| it.name.eq_ignore_ascii_case(name));
         let columns: Vec<Option<usize>> = names.iter().map(at).collect();
         let mut labels =

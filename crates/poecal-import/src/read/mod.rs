@@ -1,6 +1,6 @@
 //! Reads measurement files.
 
-mod joined_stands;
+mod joined_intervals;
 pub(crate) mod joining;
 pub(crate) mod joints;
 mod judging;
@@ -12,27 +12,27 @@ use std::path::{Path, PathBuf};
 
 use self::socket_distance::Sockets;
 use super::messages::are_messages;
-use super::table::Table;
-use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
-use crate::instruments::Opening;
-use crate::join::beside::{alone, beside, has_readings_of_pictures};
-use crate::join::join_plan::{Plan, ReadingsByLine};
+use super::table::FileTable;
+use super::{FitWhere, FrameGrouping, MeasurementFile, ReadOptions};
+use crate::instruments::OpeningContext;
+use crate::join::input_roles::{has_readings_of_pictures, lone_file_error, missing_camera_error};
+use crate::join::join_plan::{JoinPlan, ReadingsByLine};
 use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
-use crate::pictures::picture_files::TakenByImage;
+use crate::pictures::picture_files::ConfigurationsByImage;
+use crate::table::beam_breaks;
 use crate::table::configurations::in_its_file;
 use crate::table::cursor::Cursor;
 use crate::table::layout::ColumnLayout;
-use crate::table::lost;
 use crate::table::mapping::ColumnMap;
-use crate::table::naming::Names;
-use crate::table::text::{Blocks, Said};
+use crate::table::naming::RowNames;
+use crate::table::text::{FileRemarks, LineBlocks};
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
 use poecal_fit::start::{settle_faces, settle_pictures};
 use poecal_model::camera::{Board, Camera};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_numerics::text::{NamedLines, visible};
+use poecal_numerics::text::{NamedLines, escape_invisible};
 use poecal_storage::document;
 
 /// Reads measurement files, joined in their order.
@@ -51,20 +51,22 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
-    if let Some(mut plan) = Plan::from_paths(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
+    if let Some(mut plan) =
+        JoinPlan::from_paths(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))?
+    {
         plan.settle_sets(robot, options, &no_map)?;
-        let mut reader = Reader::new(robot, options, &no_map);
-        reader.joined(&plan)?;
+        let mut reader = MeasurementReader::new(robot, options, &no_map);
+        reader.read_joined(&plan)?;
         return reader.finish();
     }
-    let mut reader = Reader::new(robot, options, &no_map);
+    let mut reader = MeasurementReader::new(robot, options, &no_map);
     // Readings by picture precede the corners of the pictures, in whatever order the files are named.
     let mut order = paths.to_vec();
     if !options.cameras.is_empty() {
         order.sort_by_cached_key(|path| !has_readings_of_pictures(path, robot, reader.map));
     }
     for path in order {
-        let opening = reader.opening();
+        let opening = reader.opening_context();
         let blocks = reader.blocks_of_set(path)?;
         let first = reader.found.data.len();
         let read = reader.file(path, blocks);
@@ -74,8 +76,10 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
             return Err(error);
         }
         read.map_err(|error| in_its_file(error, path))
-            .map_err(|error| alone(error, path, &opening, reader.map))
-            .map_err(|error| beside(error, path, paths, (robot, reader.map, options.cameras.is_empty())))?;
+            .map_err(|error| lone_file_error(error, path, &opening, reader.map))
+            .map_err(|error| {
+                missing_camera_error(error, path, paths, (robot, reader.map, options.cameras.is_empty()))
+            })?;
     }
     reader.finish()
 }
@@ -94,18 +98,18 @@ pub fn parse(
     document::reading_text(path, text, || read_all(&[path], robot, options))
 }
 
-pub(crate) struct Reader<'a> {
+pub(crate) struct MeasurementReader<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) options: &'a ReadOptions,
     pub(crate) map: &'a ColumnMap,
-    pub(crate) targets: Names,
-    pub(crate) stations: Names,
+    pub(crate) targets: RowNames,
+    pub(crate) stations: RowNames,
     /// Kind of each named position, with its first occurrence.
     pub(crate) places: BTreeMap<String, (&'static str, PathBuf, usize)>,
     /// Pairs of rows: the first one's configuration until the second is read, and its line.
     pub(crate) begun: BTreeMap<String, (Option<u32>, usize)>,
     /// Readings of joints by picture.
-    pub(crate) taken: TakenByImage,
+    pub(crate) taken: ConfigurationsByImage,
     /// Name of these readings in messages.
     pub(crate) taken_as: &'static str,
     /// The joint readings of each line, if another file has them.
@@ -125,17 +129,17 @@ pub(crate) struct Reader<'a> {
     pub(crate) found: MeasurementFile,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> MeasurementReader<'a> {
     pub(crate) fn new(robot: &'a Robot, options: &'a ReadOptions, no_map: &'a ColumnMap) -> Self {
-        Reader {
+        MeasurementReader {
             robot,
             options,
             map: options.mapping.as_ref().unwrap_or(no_map),
-            targets: Names::default(),
-            stations: Names::default(),
+            targets: RowNames::default(),
+            stations: RowNames::default(),
             places: BTreeMap::new(),
             begun: BTreeMap::new(),
-            taken: TakenByImage::new(),
+            taken: ConfigurationsByImage::new(),
             taken_as: "joint readings",
             readings: None,
             times: None,
@@ -154,12 +158,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Settings with which files are opened.
-    pub(crate) fn opening(&self) -> Opening<'a> {
-        Opening { robot: self.robot, options: self.options }
+    pub(crate) fn opening_context(&self) -> OpeningContext<'a> {
+        OpeningContext { robot: self.robot, options: self.options }
     }
 
     /// Takes the notes and warnings from the opening of a file.
-    pub(crate) fn take_said(&mut self, said: Said) {
+    pub(crate) fn take_said(&mut self, said: FileRemarks) {
         self.found.notes.extend(said.notes);
         self.found.warnings.extend(said.warnings);
     }
@@ -170,13 +174,13 @@ impl<'a> Reader<'a> {
         self.found.warnings.extend(own);
     }
 
-    pub(crate) fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
+    pub(crate) fn file<'p>(&mut self, path: &'p Path, mut blocks: LineBlocks<'p>) -> Result<()> {
         blocks.begin()?;
         if are_messages(path, blocks.text())? {
             return self.messages(path, blocks);
         }
-        let mut table = Table::open(path, blocks, self.map)?;
-        self.take_said(table.said());
+        let mut table = FileTable::open(path, blocks, self.map)?;
+        self.take_said(table.take_remarks());
         let joints = self.found.data.reading_names();
         if are_corners(&table.header, joints, self.map)? {
             return self.corners(path, table);
@@ -188,7 +192,7 @@ impl<'a> Reader<'a> {
         if let Some(by_line) = &self.readings {
             layout.controller.clone_from(&by_line.controller);
         }
-        if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
+        if let Some(column) = layout.instrument.filter(|_| self.options.frames == FrameGrouping::PerFile) {
             let message = "found a column that names the instrument beside --device-frames per-file, expected one of the two: leave the option \
                            out, or the column";
             return Err(table.header.error(ErrorKind::Measurement, column, message));
@@ -209,17 +213,17 @@ impl<'a> Reader<'a> {
                 "found no position in any row, expected at least one that is neither empty nor zero";
             return Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
         }
-        let skipped = lost::lost_words(&lost);
+        let skipped = beam_breaks::lost_words(&lost);
         self.warn(path, skipped.map(|it| format!("skipped {it}; --strict refuses them")));
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
-        self.found.warnings.extend(lost::incomplete(path, new_rows));
+        self.found.warnings.extend(beam_breaks::incomplete_warning(path, new_rows));
         self.judge(&table, &cursor, first)?;
         self.understand(&table, &cursor, (first, rows, lost))
     }
 
     /// Takes the rows of a file without judging them.
-    pub(crate) fn rows_alone<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
-        let mut table = Table::open(path, blocks, self.map)?;
+    pub(crate) fn rows_alone<'p>(&mut self, path: &'p Path, blocks: LineBlocks<'p>) -> Result<()> {
+        let mut table = FileTable::open(path, blocks, self.map)?;
         self.header_line = table.header.line;
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
         let layout = self.as_shifted(layout, &table)?;
@@ -232,7 +236,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes all rows of a file, and counts them including beam breaks.
-    fn rows(&mut self, table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<(usize, NamedLines)> {
+    fn rows(&mut self, table: &mut FileTable<'_>, cursor: &mut Cursor<'_>) -> Result<(usize, NamedLines)> {
         let mut lost = NamedLines::default();
         let rows = table.some_rows("at least one measurement", |row| {
             cursor.read(row)?;
@@ -242,7 +246,8 @@ impl<'a> Reader<'a> {
                 cursor.put_readings(readings);
             }
             cursor.take_readings(row)?;
-            if self.begins_pair(row, cursor)? || lost::take_out(&mut lost, row, cursor, self.options.strict)?
+            if self.begins_pair(row, cursor)?
+                || beam_breaks::take_out(&mut lost, row, cursor, self.options.strict)?
             {
                 return Ok(());
             }
@@ -293,7 +298,7 @@ impl<'a> Reader<'a> {
         found.notes.extend(settled.notes);
         found.warnings.extend(settled.warnings);
         let said = found.notes.iter_mut().chain(&mut found.warnings);
-        said.for_each(|words| *words = visible(words).into_owned());
+        said.for_each(|words| *words = escape_invisible(words).into_owned());
         Ok(found)
     }
 }

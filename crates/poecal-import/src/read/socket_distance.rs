@@ -65,7 +65,7 @@ impl SocketDistances {
                         [] | [_] => None,
                         more => return Err(too_many(place, more)),
                     },
-                    Some(pair) => named(pair, own),
+                    Some(pair) => find_station_pair(pair, own),
                 };
                 let length = |stations| KnownLength { stations, length_m: *length_m, sigma_m: *sigma_m };
                 found.extend(stations.map(length));
@@ -98,7 +98,7 @@ fn too_many(place: &str, sockets: &[(String, usize)]) -> Error {
 }
 
 /// The stations of a pair by name; names may contain hyphens.
-fn named(pair: &str, sockets: &[(String, usize)]) -> Option<[usize; 2]> {
+fn find_station_pair(pair: &str, sockets: &[(String, usize)]) -> Option<[usize; 2]> {
     let station = |name: &str| sockets.iter().find(|(known, _)| known == name.trim()).map(|(_, at)| *at);
     pair.match_indices('-').find_map(|(at, _)| {
         let both = station(&pair[..at]).zip(station(&pair[at + 1..]));

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::csv_text::plain;
+use poecal_storage::csv_text::plain_cell;
 
 /// Separator of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -64,7 +64,7 @@ impl Separator {
     }
 
     /// The first of semicolon, tab and comma that the header has outside quotes, else whitespace.
-    pub(crate) fn recognised(header: &str) -> Self {
+    pub(crate) fn recognise(header: &str) -> Self {
         let unquoted = |separator: &Separator| {
             let mut quoted = false;
             header.chars().any(|c| {
@@ -95,7 +95,7 @@ impl<'a> Cell<'a> {
 
     /// The text without doubled quotes, and without the apostrophe with which our own files protect texts that a spreadsheet would run.
     pub fn text(&self) -> Cow<'a, str> {
-        let text = plain(self.raw);
+        let text = plain_cell(self.raw);
         if self.escaped { Cow::Owned(text.replace("\"\"", "\"")) } else { Cow::Borrowed(text) }
     }
 }
@@ -202,7 +202,7 @@ pub(crate) fn split_line<'a>(
     cells: &mut Vec<Cell<'a>>,
 ) -> Result<()> {
     split(text, separator, cells).map_err(|(offset, message)| {
-        ErrorKind::Syntax.error(message).at(path, line, character_column(text, offset))
+        ErrorKind::Syntax.error(message).at_position(path, line, character_column(text, offset))
     })
 }
 
@@ -220,23 +220,23 @@ mod tests {
         cells.iter().map(|cell| (cell.text().into_owned(), cell.offset)).collect()
     }
 
-    fn owned(cells: &[(&str, usize)]) -> Vec<(String, usize)> {
+    fn own_cells(cells: &[(&str, usize)]) -> Vec<(String, usize)> {
         cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
     }
 
     #[test]
     fn cells_keep_their_place() {
-        assert_eq!(texts("a, b ,,d", Separator::Comma), owned(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
-        assert_eq!(texts("a;", Separator::Semicolon), owned(&[("a", 0), ("", 2)]));
-        assert_eq!(texts("a\t\t b", Separator::Tab), owned(&[("a", 0), ("", 2), ("b", 4)]));
-        assert_eq!(texts("  1,5 \t 2 ", Separator::Whitespace), owned(&[("1,5", 2), ("2", 8)]));
+        assert_eq!(texts("a, b ,,d", Separator::Comma), own_cells(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
+        assert_eq!(texts("a;", Separator::Semicolon), own_cells(&[("a", 0), ("", 2)]));
+        assert_eq!(texts("a\t\t b", Separator::Tab), own_cells(&[("a", 0), ("", 2), ("b", 4)]));
+        assert_eq!(texts("  1,5 \t 2 ", Separator::Whitespace), own_cells(&[("1,5", 2), ("2", 8)]));
     }
 
     #[test]
     fn quotes_hold_separators_and_doubled_quotes() {
         assert_eq!(
             texts("\"a,b\" , \"say \"\"hi\"\"\",\"\"", Separator::Comma),
-            owned(&[("a,b", 0), ("say \"hi\"", 8), ("", 21)])
+            own_cells(&[("a,b", 0), ("say \"hi\"", 8), ("", 21)])
         );
         let mut cells = Vec::new();
         assert_eq!(split("a,\"b", Separator::Comma, &mut cells).unwrap_err().0, 2);
@@ -245,10 +245,10 @@ mod tests {
 
     #[test]
     fn the_separator_follows_from_the_header() {
-        assert_eq!(Separator::recognised("a;b,c"), Separator::Semicolon);
-        assert_eq!(Separator::recognised("\"a;b\",c"), Separator::Comma);
-        assert_eq!(Separator::recognised("a\tb c"), Separator::Tab);
-        assert_eq!(Separator::recognised("a b"), Separator::Whitespace);
+        assert_eq!(Separator::recognise("a;b,c"), Separator::Semicolon);
+        assert_eq!(Separator::recognise("\"a;b\",c"), Separator::Comma);
+        assert_eq!(Separator::recognise("a\tb c"), Separator::Tab);
+        assert_eq!(Separator::recognise("a b"), Separator::Whitespace);
     }
 
     #[test]

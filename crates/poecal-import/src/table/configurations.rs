@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::picture_names::number_at_end;
-use poecal_numerics::error::{Error, ErrorKind, Result, shown};
+use poecal_numerics::error::{Error, ErrorKind, Result, shorten_name};
 use poecal_storage::csv_text::cell;
 use poecal_storage::disk::{self, ObjectKind};
 use poecal_storage::document;
-use poecal_storage::folder::{self, LeftOut};
+use poecal_storage::folder::{self, SkippedEntry};
 use poecal_storage::hashes::sha256_of;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::numbers::{LARGEST_NUMBER, push_number};
 use poecal_storage::source::SQLITE_BAG;
-use poecal_storage::yaml::{Leaf, leaves};
+use poecal_storage::yaml::{YamlLeaf, leaves};
 use poecal_storage::{source, source_text};
 
 /// Endings of files of readings; other files of the folder, such as pictures, are ignored.
@@ -25,17 +25,17 @@ const EXPECTED: &str =
     "the joint readings of one picture: numbers, `joints: [0.1, …]`, or lines `joint1: 0.1`";
 
 /// The files of a folder.
-pub(crate) struct Configurations {
+pub(crate) struct ConfigurationFolder {
     /// CSV with a row for each file: its name, as that of the picture, and the readings.
     pub(crate) text: String,
     /// SHA-256 of the texts of the files, one after the other by their numbers.
     pub(crate) sha256: String,
     /// Entries with such a name that are no files.
-    pub(crate) left: Vec<LeftOut>,
+    pub(crate) left: Vec<SkippedEntry>,
 }
 
 /// The readings of a file; `names` is empty if it has none.
-struct Readings {
+struct FileReadings {
     path: PathBuf,
     names: Vec<String>,
     values: Vec<f64>,
@@ -43,17 +43,18 @@ struct Readings {
 
 /// True if a path is a folder.
 pub(crate) fn is_folder(path: &Path) -> bool {
-    let is_folder = |found: disk::Object| found.kind == ObjectKind::Folder;
+    let is_folder = |found: disk::DiskObject| found.kind == ObjectKind::Folder;
     !source::is_standard_input(path)
         && !document::is_kept(path)
-        && disk::here().follow(path).is_ok_and(is_folder)
+        && disk::current_disk().follow(path).is_ok_and(is_folder)
 }
 
 /// An error in the table of a folder, in the file that made the line.
 pub(crate) fn in_its_file(error: Error, folder: &Path) -> Error {
-    let is_of_table = |place: &&poecal_numerics::error::Place| place.path == folder && is_folder(folder);
+    let is_of_table =
+        |place: &&poecal_numerics::error::FilePosition| place.path == folder && is_folder(folder);
     let Some(line) = error.place().filter(is_of_table).and_then(|place| place.line) else { return error };
-    let files = numbered(folder).unwrap_or_default().0;
+    let files = numbered_files(folder).unwrap_or_default().0;
     // The line is below the header.
     match line.checked_sub(2).and_then(|at| files.get(at)) {
         Some(name) => error.without_line().with_path(&folder.join(name)),
@@ -72,18 +73,18 @@ pub(crate) fn advice(path: &Path) -> &'static str {
 }
 
 /// Reads the files of a folder whose names end in a number.
-pub(crate) fn read(folder: &Path) -> Result<Configurations> {
-    let (files, left) = numbered(folder)?;
+pub(crate) fn read(folder: &Path) -> Result<ConfigurationFolder> {
+    let (files, left) = numbered_files(folder)?;
     let (mut all, mut whole) = (Vec::with_capacity(files.len()), String::new());
     for name in &files {
         let path = folder.join(name);
-        let text = source_text::read_up_to(&path, EXPECTED, Limit::Settings)?;
-        all.push(Readings::from_text(&text, path)?);
+        let text = source_text::read_up_to(&path, EXPECTED, ResourceLimit::Settings)?;
+        all.push(FileReadings::from_text(&text, path)?);
         whole.push_str(&text);
     }
     let mut text = "image".to_owned();
     let first = all.first();
-    for column in first.map_or_else(Vec::new, Readings::columns) {
+    for column in first.map_or_else(Vec::new, FileReadings::columns) {
         text.push(',');
         text.push_str(&cell(&column));
     }
@@ -96,15 +97,15 @@ pub(crate) fn read(folder: &Path) -> Result<Configurations> {
         }
         text.push('\n');
     }
-    Ok(Configurations { text, sha256: sha256_of(&whole), left })
+    Ok(ConfigurationFolder { text, sha256: sha256_of(&whole), left })
 }
 
 /// The names of the files of readings, by their numbers, and entries with such a name that are no files.
-fn numbered(folder: &Path) -> Result<(Vec<String>, Vec<LeftOut>)> {
+fn numbered_files(folder: &Path) -> Result<(Vec<String>, Vec<SkippedEntry>)> {
     const EXPECTED: &str =
         "`configuration_1`, `configuration_2.yaml`, … with the joint readings of each picture";
     let error = |message: String| Error::new(ErrorKind::Measurement, message).in_file(folder);
-    let unreadable = |error| source::unreadable(folder, &error, EXPECTED);
+    let unreadable = |error| source::unreadable_error(folder, &error, EXPECTED);
     let is_of_bag = |name: &String| name == "metadata.yaml" || name.ends_with(".db3");
     let is_bag = folder::names(folder).map_err(unreadable)?.0.iter().any(is_of_bag);
     let is_wanted = |name: &str| {
@@ -119,8 +120,8 @@ fn numbered(folder: &Path) -> Result<(Vec<String>, Vec<LeftOut>)> {
         if let Some(other) = found.get(&number) {
             return Err(error(format!(
                 "found two files with the number {number}, `{}` and `{}`, expected one with the joint readings of each picture: move the other one away",
-                shown(other),
-                shown(&name)
+                shorten_name(other),
+                shorten_name(&name)
             )));
         }
         found.insert(number, name);
@@ -138,7 +139,7 @@ fn numbered(folder: &Path) -> Result<(Vec<String>, Vec<LeftOut>)> {
     Ok((found.into_values().collect(), left))
 }
 
-impl Readings {
+impl FileReadings {
     fn from_text(text: &str, path: PathBuf) -> Result<Self> {
         let text = text.trim_start_matches('\u{feff}');
         let refuse = |line: usize, found: &str| {
@@ -155,12 +156,12 @@ impl Readings {
         let is_yaml = || lines().any(|line| line.contains([':', '{']) || line.trim_start().starts_with("- "));
         match numbers {
             Ok(values) if values.is_empty() => refuse(1, "no number"),
-            Ok(values) => Ok(Readings { path, names: Vec::new(), values }),
+            Ok(values) => Ok(FileReadings { path, names: Vec::new(), values }),
             Err(_) if is_yaml() => match of_leaves(&leaves(text, &path, EXPECTED)?) {
-                Ok((names, values)) => Ok(Readings { path, names, values }),
+                Ok((names, values)) => Ok(FileReadings { path, names, values }),
                 Err((line, found)) => refuse(line, &found),
             },
-            Err((line, word)) => refuse(line, &format!("`{}`", shown(word))),
+            Err((line, word)) => refuse(line, &format!("`{}`", shorten_name(word))),
         }
     }
 
@@ -191,7 +192,9 @@ impl Readings {
             (false, false) => {
                 let own = |name: &String| self.names.iter().zip(&self.values).find(|it| it.0 == name);
                 match first.names.iter().find(|name| own(name).is_none()) {
-                    Some(name) => refuse(format!("found no reading of `{}`, expected one", shown(name))),
+                    Some(name) => {
+                        refuse(format!("found no reading of `{}`, expected one", shorten_name(name)))
+                    }
                     None => Ok(first.names.iter().filter_map(own).map(|it| *it.1).collect()),
                 }
             }
@@ -204,13 +207,13 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Names, if any, and values of a mapping or a list; else the line with the defect there.
-fn of_leaves(all: &[Leaf]) -> std::result::Result<(Vec<String>, Vec<f64>), (usize, String)> {
-    let below = |key: &&str| -> Vec<&Leaf> {
+fn of_leaves(all: &[YamlLeaf]) -> std::result::Result<(Vec<String>, Vec<f64>), (usize, String)> {
+    let below = |key: &&str| -> Vec<&YamlLeaf> {
         all.iter()
             .filter(|leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == key))
             .collect()
     };
-    let is_number = |leaf: &&Leaf| number(&leaf.text).is_some();
+    let is_number = |leaf: &&YamlLeaf| number(&leaf.text).is_some();
     let lists = LISTS.iter().map(below);
     let listed = lists.filter(|it| !it.is_empty()).max_by_key(|it| it.iter().all(is_number));
     let (entries, depth) = listed.map_or_else(|| (all.iter().collect(), 0), |it| (it, 1));
@@ -219,8 +222,8 @@ fn of_leaves(all: &[Leaf]) -> std::result::Result<(Vec<String>, Vec<f64>), (usiz
     for leaf in &entries {
         let path = leaf.path.join(".");
         let value = number(&leaf.text).filter(|_| leaf.path.len() == depth + 1);
-        let of = if path.is_empty() { String::new() } else { format!(" for `{}`", shown(&path)) };
-        let found = || (leaf.line, format!("`{}`{of}", shown(&leaf.text)));
+        let of = if path.is_empty() { String::new() } else { format!(" for `{}`", shorten_name(&path)) };
+        let found = || (leaf.line, format!("`{}`{of}", shorten_name(&leaf.text)));
         values.push(value.ok_or_else(found)?);
         keys.extend(leaf.path.last().cloned());
     }
@@ -240,7 +243,7 @@ mod tests {
     use super::*;
 
     fn readings_of_text(text: &str) -> std::result::Result<(Vec<String>, Vec<f64>), String> {
-        let found = Readings::from_text(text, PathBuf::from("configuration_1"));
+        let found = FileReadings::from_text(text, PathBuf::from("configuration_1"));
         found.map(|it| (it.names, it.values)).map_err(|error| error.to_string())
     }
 
@@ -265,7 +268,11 @@ mod tests {
             "name: [a, b]\nposition: [0.1, -0.2]\n",
             "{joints: [a, b], positions: [0.1, -0.2]}",
         ] {
-            assert_eq!(readings_of_text(text), Ok((vec!["a".to_owned(), "b".to_owned()], vec![0.1, -0.2])), "{text}");
+            assert_eq!(
+                readings_of_text(text),
+                Ok((vec!["a".to_owned(), "b".to_owned()], vec![0.1, -0.2])),
+                "{text}"
+            );
         }
     }
 

@@ -9,7 +9,7 @@ use poecal_numerics::unit::Unit;
 
 /// A convention of orientations in columns.
 #[derive(Debug)]
-pub(crate) struct Convention {
+pub(crate) struct OrientationConvention {
     /// The names of its columns; case does not matter.
     pub(crate) columns: &'static [&'static str],
     /// The form of the orientation.
@@ -22,7 +22,7 @@ pub(crate) struct Convention {
     pub(crate) is_makers: bool,
 }
 
-impl Convention {
+impl OrientationConvention {
     /// The unit of a maker's positions, or of its columns.
     pub(crate) fn usual_unit(&self, quantity: Unit) -> Option<NamedUnit> {
         let (length, angle) = self.usual?;
@@ -40,7 +40,7 @@ impl Convention {
     }
 
     fn of_maker(it: &'static MakersAngles) -> Self {
-        Convention {
+        OrientationConvention {
             columns: &it.names,
             form: OrientationForm::Angles(it.angles),
             usual: Some(("mm", "deg")),
@@ -56,10 +56,10 @@ pub(crate) const OPENCV: &[&str] = &["rvecx", "rvecy", "rvecz"];
 pub(crate) const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
 /// All conventions; if a header has several, the first one applies.
-pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
+pub(crate) static CONVENTIONS: LazyLock<Vec<OrientationConvention>> = LazyLock::new(|| {
     let named = |columns, form, words: &str, usual| {
         let words = words.to_owned();
-        Convention { columns, form, usual, words, is_makers: false }
+        OrientationConvention { columns, form, usual, words, is_makers: false }
     };
     let (xyzw, wxyz) = (OrientationForm::QuaternionXyzw, OrientationForm::QuaternionWxyz);
     let (vector, turns) = (OrientationForm::ROTATION_VECTOR, OrientationForm::ROLL_PITCH_YAW);
@@ -70,7 +70,7 @@ pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
         named(&["q0", "q1", "q2", "q3"], wxyz, "quaternion, q0 real", None),
         named(OPENCV, vector, "OpenCV's rvec and tvec", metres),
     ];
-    let makers = MAKERS.iter().filter(|it| it.names != AMBIGUOUS).map(Convention::of_maker);
+    let makers = MAKERS.iter().filter(|it| it.names != AMBIGUOUS).map(OrientationConvention::of_maker);
     let last = [
         // Makers' rotations about the axes that they name rx, ry, rz, which are others' names for rotation vectors.
         named(

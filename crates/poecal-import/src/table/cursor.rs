@@ -1,15 +1,15 @@
 //! A cursor over the rows of a table: the numbers of each, in metres and radians, and statistics of them.
 
 use super::header::Header;
-use super::inputs::{Input, InputSource, Range};
+use super::inputs::{InputSource, RowInput, ValueRange};
 use super::layout::ColumnLayout;
-use super::number::{DecimalSign, Numbers};
+use super::number::{DecimalSign, NumberReader};
 use super::orientation::OrientationForm;
-use crate::table::Row;
+use crate::table::FileRow;
 use poecal_arm::lie::angles::Angles;
 use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_fit::input_doubts::turns::TurnWatch;
-use poecal_fit::input_doubts::{Doubt, DoubtPlace, ReadColumn};
+use poecal_fit::input_doubts::{DoubtLocation, InputDoubt, ReadColumn};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{Error, Result};
 use poecal_numerics::named_unit::NamedUnit;
@@ -19,9 +19,9 @@ use poecal_storage::numbers::LARGEST_NUMBER;
 /// Reads the numbers of one row after the other into the same buffers.
 pub(crate) struct Cursor<'r> {
     pub(crate) layout: ColumnLayout,
-    pub(crate) numbers: Numbers,
+    pub(crate) numbers: NumberReader,
     /// Smallest and largest value of each input.
-    pub(crate) ranges: Vec<Range>,
+    pub(crate) ranges: Vec<ValueRange>,
     /// Statistics of the joint readings of all rows, and of their orientations.
     watch: JointWatch<'r>,
     orientations: TurnWatch,
@@ -36,8 +36,8 @@ impl<'r> Cursor<'r> {
     pub(crate) fn new(layout: ColumnLayout, robot: &'r Robot, decimal: Option<DecimalSign>) -> Self {
         let joints = robot.reading_names().len().min(layout.inputs.len());
         Cursor {
-            numbers: Numbers::new(decimal),
-            ranges: vec![Range::default(); layout.inputs.len()],
+            numbers: NumberReader::new(decimal),
+            ranges: vec![ValueRange::default(); layout.inputs.len()],
             watch: JointWatch::new(robot),
             orientations: TurnWatch::default(),
             values: Vec::with_capacity(layout.inputs.len()),
@@ -48,14 +48,14 @@ impl<'r> Cursor<'r> {
     }
 
     /// Reads a row's numbers; an empty cell is `None`.
-    pub(crate) fn read(&mut self, row: &Row<'_>) -> Result<()> {
+    pub(crate) fn read(&mut self, row: &FileRow<'_>) -> Result<()> {
         self.values.clear();
         self.turns.fill(0.0);
         for (index, input) in self.layout.inputs.iter().enumerate() {
             let value = match input.source {
                 InputSource::Constant(value) => Some(value),
                 InputSource::Column(_) if !input.sum.is_empty() => sum(&mut self.numbers, row, input)?,
-                InputSource::Column(column) => match row.raw(column) {
+                InputSource::Column(column) => match row.raw_text(column) {
                     "" => None,
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
                         let hint = hint(text, index < self.turns.len());
@@ -75,7 +75,7 @@ impl<'r> Cursor<'r> {
     }
 
     /// Reads the joint readings of a row with nothing else.
-    pub(crate) fn read_joints(&mut self, row: &Row<'_>) -> Result<&[f64]> {
+    pub(crate) fn read_joints(&mut self, row: &FileRow<'_>) -> Result<&[f64]> {
         self.read(row)?;
         self.take_readings(row)?;
         self.observe(row);
@@ -83,9 +83,9 @@ impl<'r> Cursor<'r> {
     }
 
     /// Takes the joint readings of the current row, which are required; whole turns beyond their limits are subtracted.
-    pub(crate) fn take_readings(&mut self, row: &Row<'_>) -> Result<()> {
+    pub(crate) fn take_readings(&mut self, row: &FileRow<'_>) -> Result<()> {
         let inputs = &self.layout.inputs;
-        let place = |input: usize| row.place(inputs.get(input).map_or(0, Input::column));
+        let place = |input: usize| row.place(inputs.get(input).map_or(0, RowInput::column));
         self.watch.unwind(&place, &mut self.values, &mut self.turns);
         self.readings.clear();
         for (input, value) in self.values.iter().take(self.turns.len()).enumerate() {
@@ -99,7 +99,7 @@ impl<'r> Cursor<'r> {
     }
 
     /// Adds the numbers of the current row, which has a measurement, to the statistics.
-    pub(crate) fn observe(&mut self, row: &Row<'_>) {
+    pub(crate) fn observe(&mut self, row: &FileRow<'_>) {
         for (value, range) in self.values.iter().zip(&mut self.ranges) {
             if let Some(value) = value {
                 range.include(*value);
@@ -120,7 +120,7 @@ impl<'r> Cursor<'r> {
             };
             let place = || {
                 let (line, column) = row.place(x.column());
-                (DoubtPlace::Cell(line, column), [x, y, z].map(|it| it.label.clone()).to_vec())
+                (DoubtLocation::Cell(line, column), [x, y, z].map(|it| it.label.clone()).to_vec())
             };
             self.orientations.observe([a, b, c], *angles == Angles::RotationVector, place);
         }
@@ -159,28 +159,28 @@ impl<'r> Cursor<'r> {
     }
 
     /// Refuses the table if there is a doubt.
-    pub(crate) fn refuse(&self, header: &Header<'_>, doubt: Option<Doubt>) -> Result<()> {
+    pub(crate) fn refuse(&self, header: &Header<'_>, doubt: Option<InputDoubt>) -> Result<()> {
         doubt.map_or(Ok(()), |it| Err(self.doubt(header, it)))
     }
 
-    fn doubt(&self, header: &Header<'_>, doubt: Doubt) -> Error {
+    fn doubt(&self, header: &Header<'_>, doubt: InputDoubt) -> Error {
         header.doubt(doubt, &self.layout.inputs)
     }
 
     /// The time of a row, seconds; NaN if it has none.
-    pub(crate) fn time_s(&self, row: &Row<'_>) -> f64 {
+    pub(crate) fn time_s(&self, row: &FileRow<'_>) -> f64 {
         let Some((column, seconds)) = self.layout.time else { return f64::NAN };
-        let text = row.raw(column).trim_start_matches('\'');
+        let text = row.raw_text(column).trim_start_matches('\'');
         let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
         value.map_or(f64::NAN, |it| it * seconds)
     }
 
     /// The row's standard deviation, if stated.
-    pub(crate) fn sigma(&self, row: &Row<'_>, input: Option<usize>) -> Result<Option<f64>> {
+    pub(crate) fn sigma(&self, row: &FileRow<'_>, input: Option<usize>) -> Result<Option<f64>> {
         let Some(input) = input else { return Ok(None) };
         match self.value(input) {
             Some(value) if value <= 0.0 => {
-                let found = format!("found `{}`", row.raw(self.column(input)));
+                let found = format!("found `{}`", row.raw_text(self.column(input)));
                 Err(self.error(row, input, &found, "a standard deviation above 0"))
             }
             value => Ok(value),
@@ -224,22 +224,22 @@ impl<'r> Cursor<'r> {
     }
 
     /// An error at the cell of an input: "`found` in column …, expected `expected`".
-    pub(crate) fn error(&self, row: &Row<'_>, input: usize, found: &str, expected: &str) -> Error {
+    pub(crate) fn error(&self, row: &FileRow<'_>, input: usize, found: &str, expected: &str) -> Error {
         let name = self.layout.inputs.get(input).map_or("", |input| &input.label);
         row.error(self.column(input), format!("{found} in column `{name}`, expected {expected}"))
     }
 
     /// The file's column of an input; 0 for a constant.
     pub(crate) fn column(&self, input: usize) -> usize {
-        self.layout.inputs.get(input).map_or(0, Input::column)
+        self.layout.inputs.get(input).map_or(0, RowInput::column)
     }
 }
 
 /// Sum of an input's columns; `None` if a cell is empty.
-fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64>> {
+fn sum(numbers: &mut NumberReader, row: &FileRow<'_>, input: &RowInput) -> Result<Option<f64>> {
     let mut sum = input.offset;
     for term in &input.sum {
-        let text = row.raw(term.column);
+        let text = row.raw_text(term.column);
         if text.is_empty() {
             return Ok(None);
         }
@@ -274,12 +274,12 @@ fn stands_for_nothing(text: &str) -> bool {
 }
 
 /// Refuses numbers beyond any measurement, whose squares would overflow.
-fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
+fn check_size(value: f64, row: &FileRow<'_>, input: &RowInput) -> Result<()> {
     let InputSource::Column(column) = input.source else { return Ok(()) };
     if value.abs() <= LARGEST_NUMBER {
         return Ok(());
     }
-    let text = row.raw(column);
+    let text = row.raw_text(column);
     let si = match input.unit.si_unit() {
         Unit::One | Unit::Second => String::new(),
         quantity @ (Unit::Metre | Unit::Radian) => format!(" {}", NamedUnit::from(quantity).symbol()),

@@ -59,11 +59,9 @@ pub(crate) fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) ->
         Some(found) => format!("the byte 0x{found:02X}"),
     };
     let (line, column) = position(&before, before.len());
-    ErrorKind::Syntax.error(format!("found {found}, expected text; save the file as `CSV UTF-8`")).at(
-        path,
-        lines + line,
-        column,
-    )
+    ErrorKind::Syntax
+        .error(format!("found {found}, expected text; save the file as `CSV UTF-8`"))
+        .at_position(path, lines + line, column)
 }
 
 #[cfg(test)]

@@ -6,14 +6,14 @@ use std::path::Path;
 use super::cells::{Cell, Separator, character_column, split_line};
 use super::column_names::number_of_column;
 use super::configurations::advice;
-use super::header_cells::{HeaderCell, bare, beside_name, header_cells, is_number};
-use super::inputs::{Input, InputSource};
-use super::places::Sheet;
-use poecal_fit::input_doubts::{Doubt, DoubtPlace};
+use super::header_cells::{HeaderCell, beside_name, header_cells, is_number, strip_brackets};
+use super::inputs::{InputSource, RowInput};
+use super::source_cells::WorkbookSheet;
+use poecal_fit::input_doubts::{DoubtLocation, InputDoubt};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
 /// The line of column names.
 pub(crate) struct Header<'a> {
@@ -29,16 +29,16 @@ pub(crate) struct Header<'a> {
     /// Columns whose cells name the joint of another column, with the name.
     pub(crate) names: Vec<(usize, String)>,
     /// The sheet of a workbook.
-    pub(crate) sheet: Option<Sheet>,
+    pub(crate) sheet: Option<WorkbookSheet>,
 }
 
 impl<'a> Header<'a> {
     pub(crate) fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
         let mut cells = Vec::new();
         split_line(path, line, text, separator, &mut cells)?;
-        if cells.len() > Limit::Columns.most_held() {
+        if cells.len() > ResourceLimit::Columns.most_held() {
             let found = format!("{} columns", cells.len());
-            return Err(ErrorKind::Syntax.error(Limit::Columns.sentence(&found)).at_line(path, line));
+            return Err(ErrorKind::Syntax.error(ResourceLimit::Columns.sentence(&found)).at_line(path, line));
         }
         if cells.iter().all(|cell| is_number(&cell.text())) {
             return Err(ErrorKind::Syntax
@@ -75,7 +75,7 @@ impl<'a> Header<'a> {
         self.units_line = Some(line);
         for (header, cell) in self.cells.iter_mut().zip(cells) {
             let unit = cell.text();
-            let unit = Some(bare(&unit)).filter(|unit| !unit.is_empty());
+            let unit = Some(strip_brackets(&unit)).filter(|unit| !unit.is_empty());
             header.below = unit.map(|unit| (character_column(text, cell.offset), unit.to_owned()));
         }
     }
@@ -136,7 +136,7 @@ impl<'a> Header<'a> {
     pub(crate) fn only_unit(&self, index: usize, expected: &str) -> Result<()> {
         let Some(cell) = self.cells.get(index) else { return Ok(()) };
         let below = self.units_line.zip(cell.below.as_ref());
-        let below = below.map(|(line, (column, unit))| (line, *column, bare(unit)));
+        let below = below.map(|(line, (column, unit))| (line, *column, strip_brackets(unit)));
         let stated = cell.unit.as_deref().map(|unit| (self.line, cell.column, unit));
         match stated.into_iter().chain(below).find(|(.., unit)| *unit != expected) {
             Some((line, column, unit)) => Err(self.error_at(
@@ -182,7 +182,7 @@ impl<'a> Header<'a> {
 
     /// Index of the column of this name, which may include the unit as in the file.
     pub(crate) fn find(&self, name: &str) -> Result<Option<usize>> {
-        if let Some(second) = self.second(name) {
+        if let Some(second) = self.second_index(name) {
             let message =
                 format!("found a second column `{name}`, expected one; rename or remove one of them");
             return Err(self.error(ErrorKind::Measurement, second, message));
@@ -192,7 +192,7 @@ impl<'a> Header<'a> {
     }
 
     /// Index of a second column of this name, if there is one.
-    pub(crate) fn second(&self, name: &str) -> Option<usize> {
+    pub(crate) fn second_index(&self, name: &str) -> Option<usize> {
         self.named.get(name)?.1
     }
 
@@ -213,8 +213,8 @@ impl<'a> Header<'a> {
     }
 
     /// The error of a doubt, at its column.
-    pub(crate) fn doubt(&self, doubt: Doubt, inputs: &[Input]) -> Error {
-        let DoubtPlace::Head(input) = doubt.place else { return doubt.error(ErrorKind::Unit, self.path) };
+    pub(crate) fn doubt(&self, doubt: InputDoubt, inputs: &[RowInput]) -> Error {
+        let DoubtLocation::Head(input) = doubt.place else { return doubt.error(ErrorKind::Unit, self.path) };
         match inputs.get(input).map(|it| it.source) {
             Some(InputSource::Column(column)) => self.error(ErrorKind::Unit, column, doubt.message),
             Some(InputSource::Constant(_)) | None => doubt.error(ErrorKind::Unit, self.path),
@@ -230,7 +230,7 @@ impl<'a> Header<'a> {
     ) -> Error {
         match &self.sheet {
             Some(sheet) => sheet.error(self.path, (line, index), kind, &message.into()),
-            None => Error::new(kind, message).at(self.path, line, column),
+            None => Error::new(kind, message).at_position(self.path, line, column),
         }
     }
 }

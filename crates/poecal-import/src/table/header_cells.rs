@@ -24,10 +24,10 @@ impl HeaderCell {
         let is_unit = |unit: &str| NamedUnit::parse_any(unit.trim()).is_ok();
         // A number in brackets is an index, as in `q[0]`.
         let is_index = |unit: &str| !unit.is_empty() && unit.bytes().all(|it| it.is_ascii_digit());
-        let (name, unit) = bracketed(text, '[', ']')
+        let (name, unit) = split_brackets(text, '[', ']')
             .filter(|(_, unit)| !is_index(unit.trim()))
-            .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
-            .or_else(|| bracketed(text, '（', '）').filter(|(_, unit)| is_unit(unit)))
+            .or_else(|| split_brackets(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
+            .or_else(|| split_brackets(text, '（', '）').filter(|(_, unit)| is_unit(unit)))
             // Theses write `q_1 / deg`.
             .or_else(|| text.rsplit_once('/').filter(|(name, unit)| !name.trim().is_empty() && is_unit(unit)))
             .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
@@ -42,12 +42,12 @@ impl HeaderCell {
 
     /// Its units, in brackets and in the line of units.
     pub(crate) fn units(&self) -> impl Iterator<Item = &str> {
-        self.unit.as_deref().into_iter().chain(self.below.iter().map(|(_, unit)| bare(unit)))
+        self.unit.as_deref().into_iter().chain(self.below.iter().map(|(_, unit)| strip_brackets(unit)))
     }
 }
 
 /// A text that ends with brackets: the parts before and in them.
-pub(crate) fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
+pub(crate) fn split_brackets(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     text.strip_suffix(close)?.rsplit_once(open)
 }
 
@@ -64,12 +64,12 @@ pub(crate) fn unit_in_name(text: &str, name: &str) -> Option<NamedUnit> {
 
 /// True if the cells below a header are units: one is, and none is a number. (Each is checked when it is needed.)
 pub(crate) fn are_units(cells: &[Cell<'_>]) -> bool {
-    cells.iter().any(|cell| NamedUnit::parse_any(bare(cell.raw)).is_ok())
+    cells.iter().any(|cell| NamedUnit::parse_any(strip_brackets(cell.raw)).is_ok())
         && !cells.iter().any(|cell| is_number(cell.raw))
 }
 
 /// A unit without brackets.
-pub(super) fn bare(text: &str) -> &str {
+pub(super) fn strip_brackets(text: &str) -> &str {
     let inside = |open, close| text.strip_prefix(open)?.strip_suffix(close);
     inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(text).trim()
 }

@@ -4,7 +4,7 @@ use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 
 /// A number in each row.
 #[derive(Clone, Debug)]
-pub(crate) struct Input {
+pub(crate) struct RowInput {
     /// Name in our form.
     pub(crate) name: String,
     /// Name in messages: the file's column; for a constant our name.
@@ -13,17 +13,17 @@ pub(crate) struct Input {
     pub(crate) unit: NamedUnit,
     pub(crate) unit_from: UnitSource,
     /// Columns of a sum; `source` is the first of them.
-    pub(crate) sum: Vec<Term>,
+    pub(crate) sum: Vec<SumTerm>,
     /// Offset that is added to a sum (metres, radians).
     pub(crate) offset: f64,
 }
 
-impl Input {
+impl RowInput {
     /// The columns, each with its factor; empty for a constant.
-    pub(crate) fn terms(&self) -> Vec<Term> {
+    pub(crate) fn terms(&self) -> Vec<SumTerm> {
         match self.source {
             InputSource::Column(column) if self.sum.is_empty() => {
-                vec![Term { column, unit: self.unit, factor: 1.0 }]
+                vec![SumTerm { column, unit: self.unit, factor: 1.0 }]
             }
             InputSource::Column(_) => self.sum.clone(),
             InputSource::Constant(_) => Vec::new(),
@@ -39,7 +39,7 @@ impl Input {
     }
 
     /// Offset that is added to the columns (metres, radians); for a constant, its value.
-    pub(crate) fn added(&self) -> f64 {
+    pub(crate) fn added_constant(&self) -> f64 {
         match self.source {
             InputSource::Column(_) => self.offset,
             InputSource::Constant(value) => value,
@@ -49,7 +49,7 @@ impl Input {
 
 /// A column of a sum.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Term {
+pub(crate) struct SumTerm {
     pub(crate) column: usize,
     pub(crate) unit: NamedUnit,
     pub(crate) factor: f64,
@@ -66,9 +66,9 @@ pub(crate) enum InputSource {
 
 /// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Range(pub(crate) Option<(f64, f64)>);
+pub(crate) struct ValueRange(pub(crate) Option<(f64, f64)>);
 
-impl Range {
+impl ValueRange {
     pub(crate) fn include(&mut self, value: f64) {
         let (min, max) = self.0.unwrap_or((value, value));
         self.0 = Some((min.min(value), max.max(value)));

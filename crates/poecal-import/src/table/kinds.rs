@@ -2,42 +2,45 @@
 
 use std::fmt;
 
-use super::roles::Role;
-use poecal_model::measurement::{Columns, FUNCTIONS, From, Function, Quantity, Row as TableRow};
+use super::roles::ColumnRole;
+use poecal_model::measurement::{
+    FUNCTIONS, FormCriterion, FunctionRow as TableRow, MeasurementColumns, MeasurementFunction, Quantity,
+};
 
 /// A kind of measurement: a function in a form of its own in files.
 #[derive(Clone, Copy)]
-pub(crate) struct Kind {
-    pub(crate) function: &'static Function,
-    pub(crate) columns: &'static Columns,
+pub(crate) struct FunctionKind {
+    pub(crate) function: &'static MeasurementFunction,
+    pub(crate) columns: &'static MeasurementColumns,
 }
 
-impl fmt::Debug for Kind {
+impl fmt::Debug for FunctionKind {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.key())
     }
 }
 
 /// All kinds.
-pub(crate) fn kinds() -> impl Iterator<Item = Kind> {
-    let of =
-        |row: &'static TableRow| row.columns.iter().map(|columns| Kind { function: row.function, columns });
+pub(crate) fn kinds() -> impl Iterator<Item = FunctionKind> {
+    let of = |row: &'static TableRow| {
+        row.columns.iter().map(|columns| FunctionKind { function: row.function, columns })
+    };
     FUNCTIONS.iter().flat_map(of)
 }
 
-impl Kind {
+impl FunctionKind {
     /// The column without which a file has no such rows; for a kind of names only, the last of its names.
     pub(crate) fn key(&self) -> &'static str {
         let of = match self.columns.from {
-            From::Numbers { .. } => self.columns.numbers.first(),
-            From::Name { .. } => self.columns.places.last(),
+            FormCriterion::Numbers { .. } => self.columns.numbers.first(),
+            FormCriterion::Name { .. } => self.columns.places.last(),
         };
         of.copied().unwrap_or_default()
     }
 
     /// True if its numbers are required.
     pub(crate) fn needs_numbers(&self) -> bool {
-        matches!(self.columns.from, From::Numbers { .. })
+        matches!(self.columns.from, FormCriterion::Numbers { .. })
     }
 
     /// The origin of its measurement, in words. The zero of readings belongs to an instrument, so that distances have another word.
@@ -60,7 +63,7 @@ impl Kind {
 
 /// Names with a meaning in every file, beside those of joints.
 pub(crate) fn our_names() -> impl Iterator<Item = &'static str> {
-    Role::Ours.words().chain(names())
+    ColumnRole::Ours.words().chain(names())
 }
 
 /// True if a name has a meaning in every file.
@@ -77,7 +80,7 @@ fn names() -> impl Iterator<Item = &'static str> {
 /// The columns of a kind in a file: its numbers and standard deviations as indices of inputs, names and words as columns.
 #[derive(Clone, Debug)]
 pub(crate) struct KindColumns {
-    pub(crate) kind: Kind,
+    pub(crate) kind: FunctionKind,
     pub(crate) numbers: Vec<usize>,
     pub(crate) sigmas: Vec<(Quantity, usize)>,
     /// Columns with the name of its anchor.

@@ -2,7 +2,7 @@
 
 use super::builder::Builder;
 use super::header::Header;
-use super::inputs::Input;
+use super::inputs::RowInput;
 use super::mapping::{ColumnMap, PoseDirection};
 use super::targets::TargetLayout;
 use crate::{FitWhere, ReadOptions};
@@ -22,7 +22,7 @@ pub(crate) enum SetRule {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ColumnLayout {
     /// Readings in the robot's order, then measured numbers.
-    pub(crate) inputs: Vec<Input>,
+    pub(crate) inputs: Vec<RowInput>,
     pub(crate) targets: Vec<TargetLayout>,
     /// Column with the target's name.
     pub(crate) target_column: Option<usize>,
@@ -71,7 +71,7 @@ impl ColumnLayout {
         let id = builder.id_column()?;
         let set = set_rule(&mut builder, options, map)?;
         let time = builder.time_column();
-        let (ignored, controller, pose) = (builder.ignored(), builder.controller(robot), map.pose);
+        let (ignored, controller, pose) = (builder.ignored_columns(), builder.controller(robot), map.pose);
         let Builder { inputs, numbered, missed, .. } = builder;
         Ok(ColumnLayout {
             inputs,
@@ -122,7 +122,7 @@ impl ColumnLayout {
         let id = builder.id_column()?;
         let set = set_rule(&mut builder, options, map)?;
         builder.optional_text_column("image")?;
-        Ok(ColumnLayout { set, ignored: builder.ignored(), ..Self::of_joints(builder, id, robot) })
+        Ok(ColumnLayout { set, ignored: builder.ignored_columns(), ..Self::of_joints(builder, id, robot) })
     }
 
     /// The layout of a file that is read only for its joints.
@@ -141,7 +141,7 @@ impl ColumnLayout {
     }
 
     /// The layout of a file without any of these, with these columns without meaning.
-    pub(crate) fn without(ignored: Vec<(String, Option<String>)>) -> Self {
+    pub(crate) fn from_ignored(ignored: Vec<(String, Option<String>)>) -> Self {
         ColumnLayout { ignored, ..ColumnLayout::default() }
     }
 

@@ -1,6 +1,6 @@
 //! A file as a table: header and rows with their positions.
 
-mod beginning;
+pub(crate) mod beam_breaks;
 pub(crate) mod cells;
 mod columns;
 pub(crate) mod configurations;
@@ -13,16 +13,16 @@ pub(crate) mod inputs;
 pub(crate) mod kinds;
 pub(crate) mod layout;
 mod lines;
-pub(crate) mod lost;
 pub(crate) mod naming;
 pub(crate) mod number;
-pub(crate) mod numbered;
+pub(crate) mod numbered_columns;
 pub(crate) mod orientation;
 pub(crate) mod picture_names;
-pub(crate) mod places;
 pub(crate) mod roles;
 pub(crate) mod row;
 pub(crate) mod rows;
+pub(crate) mod source_cells;
+mod table_start;
 pub(crate) mod text;
 pub(crate) mod times;
 pub(crate) mod train_where;
@@ -34,40 +34,40 @@ pub(crate) use columns::{builder, column_names, column_spec, mapping, mapping_va
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::table::beginning::{lines_above, next_line, stated_separator};
 use crate::table::cells::{Cell, Separator, character_column, split};
 use crate::table::header::Header;
 use crate::table::header_cells::are_units;
 use crate::table::lines::Lines;
 use crate::table::mapping::ColumnMap;
-use crate::table::places::Places;
-use crate::table::text::{Blocks, Said};
+use crate::table::source_cells::SourceCells;
+use crate::table::table_start::{lines_above, next_line, stated_separator};
+use crate::table::text::{FileRemarks, LineBlocks};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::looks_like::model_for_table;
 
 /// Largest number of lines below the header that are checked if it is none.
 const LINES_BELOW: usize = 10;
 
 /// A row, valid until the next one is read.
-pub(crate) struct Row<'t> {
+pub(crate) struct FileRow<'t> {
     pub(crate) path: &'t Path,
     pub(crate) line: usize,
     pub(crate) text: &'t str,
     pub(crate) cells: &'t [Cell<'t>],
     /// Positions of its cells in the file, if the table was made of another text.
-    places: Option<&'t Places>,
+    places: Option<&'t SourceCells>,
 }
 
 /// A file, read block by block.
-pub(crate) struct Table<'a> {
+pub(crate) struct FileTable<'a> {
     pub(crate) header: Header<'a>,
     pub(crate) separator: Separator,
     /// The line that states the separator, as `sep=;`.
     pub(crate) separator_line: Option<usize>,
-    blocks: Blocks<'a>,
+    blocks: LineBlocks<'a>,
     /// Positions in the file, for rows that were made of another file.
-    places: Option<Places>,
+    places: Option<SourceCells>,
     /// The last line of the header in the blocks.
     header_end: usize,
     /// True if the rows of the current block are still to be returned.
@@ -80,16 +80,16 @@ pub(crate) struct TableRows<'t> {
     pub(crate) text: &'t str,
     header: &'t Header<'t>,
     separator: Separator,
-    places: Option<&'t Places>,
+    places: Option<&'t SourceCells>,
     lines: Lines<'t>,
     cells: Vec<Cell<'t>>,
     /// True if no row was returned yet.
     is_first: bool,
 }
 
-impl<'a> Table<'a> {
+impl<'a> FileTable<'a> {
     /// Reads the header with the lines of separator and units; the separator is that of the mapping, a stated or a recognised one.
-    pub(crate) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
+    pub(crate) fn open(path: &'a Path, mut blocks: LineBlocks<'a>, map: &ColumnMap) -> Result<Self> {
         blocks.begin()?;
         let none =
             || ErrorKind::Syntax.error("found no line with text, expected a header and rows").in_file(path);
@@ -103,7 +103,7 @@ impl<'a> Table<'a> {
         if stated.is_some() {
             (line, text) = next_line(&mut blocks, line)?.ok_or_else(none)?;
         }
-        let separator = map.separator.or(stated).unwrap_or_else(|| Separator::recognised(&text));
+        let separator = map.separator.or(stated).unwrap_or_else(|| Separator::recognise(&text));
         let mut header = Header::new(path, line, &text, separator)?;
         header.ignore(&map.ignore);
         if let Some((line, text)) = next_line(&mut blocks, line)? {
@@ -130,12 +130,12 @@ impl<'a> Table<'a> {
         if above > map.skip_lines {
             blocks.say(format!("{}: took line {} for the names of the columns", path.display(), header.line));
         }
-        Ok(Table { header, separator, separator_line, blocks, places, header_end, unread: true })
+        Ok(FileTable { header, separator, separator_line, blocks, places, header_end, unread: true })
     }
 
     /// The text before the first block of rows, if the blocks keep it.
-    pub(crate) fn passed(&mut self) -> String {
-        self.blocks.passed()
+    pub(crate) fn take_passed_text(&mut self) -> String {
+        self.blocks.take_passed_text()
     }
 
     /// True if the file begins with a byte order mark.
@@ -159,7 +159,7 @@ impl<'a> Table<'a> {
     }
 
     /// Interpretation of a file in another form, in a few words.
-    pub(crate) fn understood(&self) -> Option<String> {
+    pub(crate) fn understood_form(&self) -> Option<String> {
         self.places.as_ref().map(|it| it.understood.clone()).filter(|it| !it.is_empty())
     }
 
@@ -169,8 +169,8 @@ impl<'a> Table<'a> {
     }
 
     /// Takes the notes and warnings on the file.
-    pub(crate) fn said(&mut self) -> Said {
-        self.blocks.said()
+    pub(crate) fn take_remarks(&mut self) -> FileRemarks {
+        self.blocks.take_remarks()
     }
 
     /// Checksum of the bytes read so far.
@@ -184,7 +184,7 @@ impl<'a> Table<'a> {
         if !is_first && !self.blocks.advance()? {
             return Ok(None);
         }
-        let Table { header, separator, blocks, places, header_end, .. } = self;
+        let FileTable { header, separator, blocks, places, header_end, .. } = self;
         let lines = blocks.lines(*header_end);
         let (text, places) = (blocks.text(), places.as_ref());
         Ok(Some(TableRows {
@@ -200,14 +200,16 @@ impl<'a> Table<'a> {
 }
 
 /// Refuses rows beyond the limit: they are held in memory, and a pipe may be endless.
-pub(crate) fn refuse_more_rows(read: usize, row: &Row<'_>) -> Result<()> {
-    if read <= Limit::Rows.most_held() {
+pub(crate) fn refuse_more_rows(read: usize, row: &FileRow<'_>) -> Result<()> {
+    if read <= ResourceLimit::Rows.most_held() {
         return Ok(());
     }
-    Err(ErrorKind::Measurement.error(Limit::Rows.exceeded("one file")).at_line(row.path, row.line))
+    Err(ErrorKind::Measurement
+        .error(ResourceLimit::Rows.exceeded_error("one file"))
+        .at_line(row.path, row.line))
 }
 
-impl Row<'_> {
+impl FileRow<'_> {
     /// Line and column (characters, from 1) of a cell.
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let offset = self.cells.get(index).map_or(0, |cell| cell.offset);
@@ -219,7 +221,7 @@ impl Row<'_> {
         let (line, column) = self.place(index);
         match self.places {
             Some(places) => places.error(self.path, line, index, ErrorKind::Measurement, message.into()),
-            None => ErrorKind::Measurement.error(message).at(self.path, line, column),
+            None => ErrorKind::Measurement.error(message).at_position(self.path, line, column),
         }
     }
 }
@@ -231,8 +233,8 @@ mod tests {
 
     #[test]
     fn a_row_too_many_is_refused() {
-        let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[], places: None };
-        limits::on(limits::here().with(Limit::Rows, 3), || {
+        let row = FileRow { path: Path::new(PATH), line: 7, text: "", cells: &[], places: None };
+        limits::run_with_limits(limits::current_limits().with_limit(ResourceLimit::Rows, 3), || {
             assert!(refuse_more_rows(3, &row).is_ok());
             let error = refuse_more_rows(4, &row).unwrap_err().to_string();
             assert!(
@@ -250,7 +252,8 @@ mod tests {
     fn rows(bytes: &[u8], size: usize) -> std::result::Result<Vec<(usize, Vec<String>)>, String> {
         let path = Path::new(PATH);
         let read = || {
-            let mut table = Table::open(path, Blocks::sized(path, bytes, size), &ColumnMap::default())?;
+            let mut table =
+                FileTable::open(path, LineBlocks::with_block_size(path, bytes, size), &ColumnMap::default())?;
             let mut found = Vec::new();
             while let Some(mut rows) = table.next_block()? {
                 while let Some(row) = rows.next()? {

@@ -3,23 +3,23 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use crate::table::Row;
+use crate::table::FileRow;
 use poecal_numerics::error::Result;
 
 /// The names so far. `first` states for each kind of name whether the first row has one, and its position.
 #[derive(Default)]
-pub(crate) struct Names {
+pub(crate) struct RowNames {
     first: BTreeMap<&'static str, (bool, PathBuf, usize)>,
     indices: BTreeMap<String, usize>,
     /// The last name with its index, since most rows have that of the row before.
     last: Option<(&'static str, Option<String>, usize)>,
 }
 
-impl Names {
+impl RowNames {
     /// Index of a row's name; a new name gets the next one. `what` is the kind of name.
     pub(crate) fn index(
         &mut self,
-        row: &Row<'_>,
+        row: &FileRow<'_>,
         column: Option<usize>,
         what: &'static str,
         name: Option<&str>,
@@ -43,7 +43,7 @@ impl Names {
     /// Refuses a row with a name if the first row has none, or the reverse.
     fn check(
         &mut self,
-        row: &Row<'_>,
+        row: &FileRow<'_>,
         column: Option<usize>,
         what: &'static str,
         name: Option<&str>,

@@ -13,15 +13,15 @@ pub enum DecimalSign {
 }
 
 /// Reader of numbers; the first one with a decimal sign fixes the sign of the file.
-pub(crate) struct Numbers {
+pub(crate) struct NumberReader {
     sign: Option<(DecimalSign, Option<usize>)>,
     buffer: String,
 }
 
-impl Numbers {
+impl NumberReader {
     /// A reader for numbers with a known decimal sign, or one to be found.
     pub(crate) fn new(stated: Option<DecimalSign>) -> Self {
-        Numbers { sign: stated.map(|sign| (sign, None)), buffer: String::new() }
+        NumberReader { sign: stated.map(|sign| (sign, None)), buffer: String::new() }
     }
 
     /// The decimal sign; a point if no number has had one.
@@ -108,11 +108,11 @@ mod tests {
 
     #[test]
     fn the_first_decimal_sign_decides() {
-        let mut numbers = Numbers::new(None);
+        let mut numbers = NumberReader::new(None);
         assert_eq!(numbers.parse("12", 2), Ok(12.0));
         assert_eq!(numbers.parse("-2,02011E+13", 3), Ok(-2.020_11e13));
         assert_eq!(numbers.parse("1.5", 4), Err("a number with a decimal comma as in line 3".to_owned()));
-        let mut numbers = Numbers::new(Some(DecimalSign::Point));
+        let mut numbers = NumberReader::new(Some(DecimalSign::Point));
         assert_eq!(
             numbers.parse("1,5", 4),
             Err("a number with a decimal point as the mapping says".to_owned())
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn the_fast_way_takes_what_the_standard_library_takes() {
-        let mut numbers = Numbers::new(Some(DecimalSign::Point));
+        let mut numbers = NumberReader::new(Some(DecimalSign::Point));
         for text in [
             "1",
             "+1",
@@ -151,13 +151,13 @@ mod tests {
     #[test]
     fn what_is_no_finite_number_is_refused() {
         for text in ["1 234.5", "-1'234,5", "1\u{202f}234"] {
-            assert_eq!(Numbers::new(None).parse(text, 1), Err(NO_GROUPS.to_owned()), "{text}");
+            assert_eq!(NumberReader::new(None).parse(text, 1), Err(NO_GROUPS.to_owned()), "{text}");
         }
-        assert_eq!(Numbers::new(None).parse("2024-01-02 x", 1), Err("a finite number".to_owned()));
+        assert_eq!(NumberReader::new(None).parse("2024-01-02 x", 1), Err("a finite number".to_owned()));
         for text in
             ["nan", "NaN", "inf", "-infinity", "1e999", "abc", "", "1e", "--1", "0x10", "1_0", "1,234.5"]
         {
-            assert!(Numbers::new(None).parse(text, 1).is_err(), "{text}");
+            assert!(NumberReader::new(None).parse(text, 1).is_err(), "{text}");
         }
     }
 }

@@ -34,10 +34,10 @@ pub(crate) enum OrientationForm {
 }
 
 /// A form with its name in a mapping, its words, and the contents of its columns in order.
-type Named = (OrientationForm, &'static str, &'static str, &'static [&'static str]);
+type NamedOrientation = (OrientationForm, &'static str, &'static str, &'static [&'static str]);
 
 /// Forms that are not three angles about axes, and the most frequent ones, first the most frequent.
-const NAMED: [Named; 6] = [
+const NAMED: [NamedOrientation; 6] = [
     (OrientationForm::QuaternionXyzw, "quaternion_xyzw", "quaternion x, y, z, w", &["qx", "qy", "qz", "qw"]),
     (OrientationForm::QuaternionWxyz, "quaternion_wxyz", "quaternion w, x, y, z", &["qw", "qx", "qy", "qz"]),
     (OrientationForm::ROTATION_VECTOR, "rotation_vector", "rotation vector", &["rx", "ry", "rz"]),
@@ -74,13 +74,13 @@ impl OrientationForm {
         NAMED.iter().map(|it| it.0)
     }
 
-    fn named(self) -> Option<&'static Named> {
+    fn named_form(self) -> Option<&'static NamedOrientation> {
         NAMED.iter().find(|it| it.0 == self)
     }
 
     /// Name in a mapping.
-    pub(crate) fn mapped(self) -> String {
-        match (self, self.named()) {
+    pub(crate) fn mapping_text(self) -> String {
+        match (self, self.named_form()) {
             (OrientationForm::Angles(angles), None) => angles.to_string(),
             (_, named) => named.map_or("", |it| it.1).to_owned(),
         }
@@ -104,7 +104,7 @@ impl OrientationForm {
 
     /// Contents of its columns, in order.
     pub(crate) fn part_names(self) -> &'static [&'static str] {
-        self.named().map_or(&["first angle", "second angle", "third angle"], |it| it.3)
+        self.named_form().map_or(&["first angle", "second angle", "third angle"], |it| it.3)
     }
 
     /// The rotation of the columns' values (radians, quaternion parts or a matrix), or the text that was found and the expected one.
@@ -162,7 +162,7 @@ impl FromStr for OrientationForm {
 
 impl fmt::Display for OrientationForm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (word, axes) = match (self.named(), self) {
+        let (word, axes) = match (self.named_form(), self) {
             (None, OrientationForm::Angles(Angles::Intrinsic(axes))) => ("intrinsic", axes),
             (None, OrientationForm::Angles(Angles::Extrinsic(axes))) => ("extrinsic", axes),
             (named, _) => return f.write_str(named.map_or("", |it| it.2)),

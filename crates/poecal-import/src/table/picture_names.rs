@@ -24,7 +24,7 @@ fn by_number<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<u64, Optio
 }
 
 /// Names of another file that belong to the same pictures.
-pub(crate) struct Partners<'a> {
+pub(crate) struct PicturePartners<'a> {
     others: BTreeSet<&'a String>,
     /// Names that differ, and end in the same number.
     pub(crate) alike: BTreeMap<&'a String, &'a String>,
@@ -32,11 +32,11 @@ pub(crate) struct Partners<'a> {
     first: Option<(&'a String, &'a String)>,
 }
 
-impl<'a> Partners<'a> {
+impl<'a> PicturePartners<'a> {
     pub(crate) fn new(own: &BTreeSet<&'a String>, others: BTreeSet<&'a String>) -> Self {
         let pairs = same_numbers(own, &others);
         let first = pairs.first().copied();
-        Partners { others, alike: pairs.into_iter().collect(), first }
+        PicturePartners { others, alike: pairs.into_iter().collect(), first }
     }
 
     /// The pictures that were matched by number, of `all`, in words.

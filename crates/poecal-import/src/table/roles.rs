@@ -7,7 +7,7 @@ use poecal_numerics::named_unit::NamedUnit;
 
 /// Role of a column, or of a word in its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
+pub(crate) enum ColumnRole {
     /// Meaning in every file of measurements, by exactly this name.
     Ours,
     /// The readings of a numbered joint, with its number.
@@ -65,58 +65,58 @@ pub(crate) enum Role {
 }
 
 /// Words of each role in small letters and digits, except our own; the first one that a file has applies.
-const ROLES: &[(Role, &str)] = &[
+const ROLES: &[(ColumnRole, &str)] = &[
     (
-        Role::Ours,
+        ColumnRole::Ours,
         "x y z qx qy qz qw rx ry rz roll pitch yaw target instrument pair sigma_position sigma_x sigma_y sigma_z sigma_rotation id set",
     ),
-    (Role::Joint, "q j a joint axis theta th jnt jointposition jointangle angle"),
-    (Role::Time, "time t timestamp stamp times timeseconds seconds elapsed"),
-    (Role::Picture, "image picture file filename"),
-    (Role::Frame, "frame imageid"),
-    (Role::Row, "name id index"),
-    (Role::Corner, "target corner cornerid id index mark point marker"),
-    (Role::Pixel, "u v"),
-    (Role::Pixel, "column row"),
-    (Role::Pixel, "col row"),
-    (Role::Pixel, "xpx ypx"),
-    (Role::Pixel, "px py"),
-    (Role::Pixel, "pixelx pixely"),
-    (Role::Pixel, "imagex imagey"),
-    (Role::PixelSigma, "sigma sigmapx"),
-    (Role::Camera, "camera"),
-    (Role::Board, "board"),
-    (Role::BoardPoint, "target marker corner name"),
-    (Role::OnBoard, "obj object"),
-    (Role::OfArm, "flange robot tcp base ee tool0 tool gripper arm hand endeffector"),
-    (Role::OfTarget, "target board marker camera cam tag pattern object chessboard c"),
-    (Role::KeyOfArm, "effector robot flange tcp gripper hand ee arm base fpe fme rpe"),
-    (Role::KeyOfTarget, "object tracking target board marker camera cam pattern cpo cmo"),
-    (Role::Part(""), "position pos tvec translation trans"),
-    (Role::Part("rvec"), "rvec rotvec"),
-    (Role::Part("intrinsic"), "intrinsic"),
-    (Role::Part("q"), "orientation quaternion quat rotation"),
-    (Role::Place, "t p"),
-    (Role::Reading, "actual measured meas current act feedback"),
+    (ColumnRole::Joint, "q j a joint axis theta th jnt jointposition jointangle angle"),
+    (ColumnRole::Time, "time t timestamp stamp times timeseconds seconds elapsed"),
+    (ColumnRole::Picture, "image picture file filename"),
+    (ColumnRole::Frame, "frame imageid"),
+    (ColumnRole::Row, "name id index"),
+    (ColumnRole::Corner, "target corner cornerid id index mark point marker"),
+    (ColumnRole::Pixel, "u v"),
+    (ColumnRole::Pixel, "column row"),
+    (ColumnRole::Pixel, "col row"),
+    (ColumnRole::Pixel, "xpx ypx"),
+    (ColumnRole::Pixel, "px py"),
+    (ColumnRole::Pixel, "pixelx pixely"),
+    (ColumnRole::Pixel, "imagex imagey"),
+    (ColumnRole::PixelSigma, "sigma sigmapx"),
+    (ColumnRole::Camera, "camera"),
+    (ColumnRole::Board, "board"),
+    (ColumnRole::BoardPoint, "target marker corner name"),
+    (ColumnRole::OnBoard, "obj object"),
+    (ColumnRole::OfArm, "flange robot tcp base ee tool0 tool gripper arm hand endeffector"),
+    (ColumnRole::OfTarget, "target board marker camera cam tag pattern object chessboard c"),
+    (ColumnRole::KeyOfArm, "effector robot flange tcp gripper hand ee arm base fpe fme rpe"),
+    (ColumnRole::KeyOfTarget, "object tracking target board marker camera cam pattern cpo cmo"),
+    (ColumnRole::Part(""), "position pos tvec translation trans"),
+    (ColumnRole::Part("rvec"), "rvec rotvec"),
+    (ColumnRole::Part("intrinsic"), "intrinsic"),
+    (ColumnRole::Part("q"), "orientation quaternion quat rotation"),
+    (ColumnRole::Place, "t p"),
+    (ColumnRole::Reading, "actual measured meas current act feedback"),
     (
-        Role::Other,
+        ColumnRole::Other,
         "target desired wanted command commanded cmd goal setpoint reference velocity speed acceleration torque effort moment temperature \
          voltage amps tau error load",
     ),
-    (Role::InJoint, "joint axis axe achse gelenk"),
-    (Role::InMeasured, "meas actual tracker laser leica prism smr refl point"),
-    (Role::InStatistic, "std sigma stdev dev err rms cov noise u95"),
-    (Role::Guessed, "p t pos position tcp point meas target"),
-    (Role::Axes, "x y z"),
-    (Role::Axes, "east north up"),
+    (ColumnRole::InJoint, "joint axis axe achse gelenk"),
+    (ColumnRole::InMeasured, "meas actual tracker laser leica prism smr refl point"),
+    (ColumnRole::InStatistic, "std sigma stdev dev err rms cov noise u95"),
+    (ColumnRole::Guessed, "p t pos position tcp point meas target"),
+    (ColumnRole::Axes, "x y z"),
+    (ColumnRole::Axes, "east north up"),
     (
-        Role::NominalSet,
+        ColumnRole::NominalSet,
         "nominal nom theoretical theory ideal command commanded cmd desired reference ref design calculated target",
     ),
-    (Role::MeasuredSet, "measured measurement meas actual act real laser"),
+    (ColumnRole::MeasuredSet, "measured measurement meas actual act real laser"),
 ];
 
-impl Role {
+impl ColumnRole {
     /// The rows of the role.
     pub(crate) fn rows(self) -> impl Iterator<Item = &'static str> {
         ROLES.iter().filter(move |it| it.0 == self).map(|it| it.1)
@@ -140,14 +140,14 @@ impl Role {
     /// The beginning of a name that belongs to a part of a pose, and the rest.
     pub(crate) fn part(name: &str) -> Option<(&'static str, &str)> {
         ROLES.iter().find_map(|(role, words)| {
-            let Role::Part(part) = role else { return None };
+            let ColumnRole::Part(part) = role else { return None };
             Some((*part, words.split(' ').find_map(|word| name.strip_prefix(word))?))
         })
     }
 }
 
 /// Letters and digits of a name, in small letters.
-pub(crate) fn plain(name: &str) -> String {
+pub(crate) fn plain_letters(name: &str) -> String {
     name.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
@@ -175,7 +175,7 @@ mod tests {
             let words: Vec<&str> = row.split(' ').collect();
             let all: BTreeSet<&str> = words.iter().copied().collect();
             assert_eq!(all.len(), words.len(), "{role:?}");
-            let is_plain = |word: &&str| *role == Role::Ours || plain(word) == *word;
+            let is_plain = |word: &&str| *role == ColumnRole::Ours || plain_letters(word) == *word;
             assert!(words.iter().all(is_plain), "{role:?}: {row}");
         }
     }

@@ -5,14 +5,14 @@ use std::borrow::Cow;
 use nalgebra::{Matrix3, Vector3};
 
 use super::cursor::Cursor;
-use super::kinds::{Kind, KindColumns};
+use super::kinds::{FunctionKind, KindColumns};
 use super::mapping::PoseDirection;
 use super::orientation::MOST_PARTS;
 use super::targets::TargetLayout;
 use crate::PlaneContact;
-use crate::table::Row;
+use crate::table::FileRow;
 use poecal_arm::lie::Pose;
-use poecal_model::measurement::{From, Measurement, Stated};
+use poecal_model::measurement::{FormCriterion, Measurement, StatedDeviations};
 use poecal_numerics::error::Result;
 
 /// Expected cells of an incomplete position that belongs to a pose, or to a row with nothing else.
@@ -20,7 +20,7 @@ const EMPTY: &str = "a position: where none was measured, leave all of its cells
 
 /// Measurement of a target in the current row; `None` if an optional one is missing.
 pub(crate) fn measurement(
-    row: &Row<'_>,
+    row: &FileRow<'_>,
     target: &TargetLayout,
     direction: PoseDirection,
     inputs: &Cursor<'_>,
@@ -61,7 +61,11 @@ pub(crate) fn measurement(
 }
 
 /// The measured rotation; `None` if all its cells are empty.
-fn orientation(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Result<Option<Matrix3<f64>>> {
+fn orientation(
+    row: &FileRow<'_>,
+    target: &TargetLayout,
+    inputs: &Cursor<'_>,
+) -> Result<Option<Matrix3<f64>>> {
     let Some((form, columns)) = &target.orientation else { return Ok(None) };
     let mut values = [0.0; MOST_PARTS];
     let mut empty = None;
@@ -89,7 +93,7 @@ fn orientation(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Res
 
 /// Standard deviations of the components of a measured position, if the row states them, metres.
 pub(crate) fn component_noise(
-    row: &Row<'_>,
+    row: &FileRow<'_>,
     target: &TargetLayout,
     inputs: &Cursor<'_>,
     seen: &Measurement,
@@ -113,7 +117,7 @@ pub(crate) fn component_noise(
 
 impl KindColumns {
     /// Name of the anchor of a row; `None` if no cell names it.
-    pub(crate) fn place_name<'r>(&self, row: &Row<'r>) -> Option<Cow<'r, str>> {
+    pub(crate) fn place_name<'r>(&self, row: &FileRow<'r>) -> Option<Cow<'r, str>> {
         let mut parts = self.places.iter().filter_map(|&at| row.cells.get(at)).map(|cell| cell.text());
         let first = parts.next()?;
         let joined = parts.fold(first, |all, part| match (all.is_empty(), part.is_empty()) {
@@ -125,14 +129,14 @@ impl KindColumns {
     }
 
     /// True if the row's word is that of the kind; without a word, the usual one applies.
-    fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
+    fn has_word(&self, row: &FileRow<'_>, usual: PlaneContact) -> Result<bool> {
         let Some((column, own)) = self.kind.columns.word else { return Ok(true) };
         let cell = self.word.and_then(|at| Some((at, row.cells.get(at)?.text())));
         let Some((at, text)) = cell.filter(|(_, text)| !text.is_empty()) else {
             return Ok(usual.word() == own);
         };
-        if !Kind::words(column).any(|word| word == text) {
-            let words: Vec<String> = Kind::words(column).map(|word| format!("`{word}`")).collect();
+        if !FunctionKind::words(column).any(|word| word == text) {
+            let words: Vec<String> = FunctionKind::words(column).map(|word| format!("`{word}`")).collect();
             let message = format!("found `{text}` in column `{column}`, expected {}", words.join(" or "));
             return Err(row.error(at, message));
         }
@@ -140,11 +144,11 @@ impl KindColumns {
     }
 
     /// True if a row has a measurement of the kind; `has_position` is true if it has a position too.
-    pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
+    pub(crate) fn is_measured(&self, row: &FileRow<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
         let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
         match self.kind.columns.from {
-            From::Numbers { .. } => has_number(),
-            From::Name { .. } => {
+            FormCriterion::Numbers { .. } => has_number(),
+            FormCriterion::Name { .. } => {
                 let is_named = self
                     .places
                     .last()
@@ -157,18 +161,18 @@ impl KindColumns {
 
     /// True if its numbers in a row are those of a beam break.
     pub(crate) fn is_lost(&self, inputs: &Cursor<'_>) -> bool {
-        self.kind.columns.from == (From::Numbers { above_zero: true })
+        self.kind.columns.from == (FormCriterion::Numbers { above_zero: true })
             && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
     }
 
     /// The measurement of a row, with its stated noise; `None` if it has none.
     pub(crate) fn measurement(
         &self,
-        row: &Row<'_>,
+        row: &FileRow<'_>,
         inputs: &Cursor<'_>,
         (has_position, usual): (bool, PlaneContact),
-    ) -> Result<Option<(Measurement, Stated)>> {
-        let Kind { function, columns } = self.kind;
+    ) -> Result<Option<(Measurement, StatedDeviations)>> {
+        let FunctionKind { function, columns } = self.kind;
         if !self.is_measured(row, inputs, has_position) || !self.has_word(row, usual)? {
             return Ok(None);
         }
@@ -176,23 +180,27 @@ impl KindColumns {
         for (number, &input) in numbers.iter_mut().zip(&self.numbers) {
             let value = match (inputs.value(input), columns.from) {
                 (Some(value), _) => value,
-                (None, From::Name { .. }) => 0.0,
-                (None, From::Numbers { .. }) => {
+                (None, FormCriterion::Name { .. }) => 0.0,
+                (None, FormCriterion::Numbers { .. }) => {
                     let expected = "all numbers of a measurement, or none";
                     return Err(inputs.error(row, input, "found an empty cell", expected));
                 }
             };
-            let is_size = columns.from == (From::Name { size: true }) && inputs.value(input).is_some();
-            if (is_size || columns.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
-                let text = row.raw(inputs.column(input));
-                let what =
-                    if is_size { columns.numbers.first().copied() } else { Some(function.leading().name()) };
+            let is_size =
+                columns.from == (FormCriterion::Name { size: true }) && inputs.value(input).is_some();
+            if (is_size || columns.from == (FormCriterion::Numbers { above_zero: true })) && value <= 0.0 {
+                let text = row.raw_text(inputs.column(input));
+                let what = if is_size {
+                    columns.numbers.first().copied()
+                } else {
+                    Some(function.leading_quantity().name())
+                };
                 let expected = format!("a {} above 0", what.unwrap_or("number"));
                 return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
             }
             *number = value;
         }
-        let mut stated = Stated::default();
+        let mut stated = StatedDeviations::default();
         for &(quantity, input) in &self.sigmas {
             stated.set(quantity, inputs.sigma(row, Some(input))?);
         }

@@ -5,16 +5,16 @@ use std::fmt::Arguments;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
 use super::header::Header;
-use super::number::Numbers;
-use super::{Row, Table, TableRows, refuse_more_rows};
+use super::number::NumberReader;
+use super::{FileRow, FileTable, TableRows, refuse_more_rows};
 use poecal_numerics::error::{ErrorKind, Result};
 
 /// Number of lines below the first row that show whether all rows have another number of cells than the header.
 const NEAR: usize = 10;
 
-impl Table<'_> {
+impl FileTable<'_> {
     /// Passes each row to `take`, as many as are held in memory, and counts them; there may be none.
-    pub(crate) fn each_row(&mut self, mut take: impl FnMut(&Row<'_>) -> Result<()>) -> Result<usize> {
+    pub(crate) fn each_row(&mut self, mut take: impl FnMut(&FileRow<'_>) -> Result<()>) -> Result<usize> {
         let mut count = 0;
         while let Some(mut rows) = self.next_block()? {
             while let Some(row) = rows.next()? {
@@ -30,7 +30,7 @@ impl Table<'_> {
     pub(crate) fn some_rows(
         &mut self,
         expected: &str,
-        take: impl FnMut(&Row<'_>) -> Result<()>,
+        take: impl FnMut(&FileRow<'_>) -> Result<()>,
     ) -> Result<usize> {
         match self.each_row(take)? {
             0 => Err(ErrorKind::Measurement
@@ -43,7 +43,7 @@ impl Table<'_> {
 
 impl TableRows<'_> {
     /// The next row that is not empty.
-    pub(crate) fn next(&mut self) -> Result<Option<Row<'_>>> {
+    pub(crate) fn next(&mut self) -> Result<Option<FileRow<'_>>> {
         let Header { path, line: header_line, .. } = *self.header;
         loop {
             let Some((line, text)) = self.lines.next() else { return Ok(None) };
@@ -65,7 +65,7 @@ impl TableRows<'_> {
                         if found == 1 { "" } else { "s" },
                         self.count_hint(text)
                     ))
-                    .at(path, line, place));
+                    .at_position(path, line, place));
             }
             for (at, name) in &self.header.names {
                 if let Some(cell) = self.cells.get(*at).filter(|cell| cell.text().trim() != name) {
@@ -75,12 +75,12 @@ impl TableRows<'_> {
                         self.header.cells.get(*at).map_or("", |it| it.text.as_str())
                     );
                     let place = character_column(text, cell.offset);
-                    return Err(ErrorKind::Measurement.error(message).at(path, line, place));
+                    return Err(ErrorKind::Measurement.error(message).at_position(path, line, place));
                 }
             }
             self.is_first = false;
             let line = self.places.map_or(line, |places| places.line(line));
-            return Ok(Some(Row { path, line, text, cells: &self.cells, places: self.places }));
+            return Ok(Some(FileRow { path, line, text, cells: &self.cells, places: self.places }));
         }
     }
 
@@ -129,9 +129,9 @@ impl TableRows<'_> {
     }
 }
 
-impl<'t> Row<'t> {
+impl<'t> FileRow<'t> {
     /// The text of a cell in the file; empty if there is no such cell.
-    pub(crate) fn raw(&self, at: usize) -> &str {
+    pub(crate) fn raw_text(&self, at: usize) -> &str {
         self.cells.get(at).map_or("", |cell| cell.raw)
     }
 
@@ -146,7 +146,7 @@ impl<'t> Row<'t> {
     }
 
     /// The number of a cell; `of` describes it in an error.
-    pub(crate) fn number(&self, at: usize, numbers: &mut Numbers, of: Arguments<'_>) -> Result<f64> {
+    pub(crate) fn number(&self, at: usize, numbers: &mut NumberReader, of: Arguments<'_>) -> Result<f64> {
         let text = self.cell(Some(at)).unwrap_or_default();
         let found = numbers.parse(text.trim(), self.line);
         found.map_err(|expected| self.error(at, format!("found `{text}`{of}, expected {expected}")))

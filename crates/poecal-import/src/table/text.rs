@@ -3,14 +3,14 @@
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
-use super::configurations::{self, Configurations};
+use super::configurations::{self, ConfigurationFolder};
 use super::encodings::{is_utf16, not_utf8, of_utf16, of_windows_1252};
 use super::lines::Lines;
-use super::places::Places;
+use super::source_cells::SourceCells;
 use poecal_numerics::error::{ErrorKind, Result, position};
-use poecal_storage::hashes::Hashing;
-use poecal_storage::limits::Limit;
-use poecal_storage::source::{self, Input, unreadable};
+use poecal_storage::hashes::HashingReader;
+use poecal_storage::limits::ResourceLimit;
+use poecal_storage::source::{self, Input, unreadable_error};
 
 /// Approximate number of bytes held at a time.
 const BLOCK: usize = 1 << 18;
@@ -21,13 +21,13 @@ const FIRST_LINES: usize = 64;
 
 /// Source of a text.
 enum TextSource {
-    File(Hashing<Input>),
+    File(HashingReader<Input>),
     /// Text made of other files, with the checksum of their bytes.
     Made(Box<dyn Read + Send>, Option<String>),
 }
 
 /// A text in blocks of whole lines, so that large files are never held whole.
-pub(crate) struct Blocks<'a> {
+pub(crate) struct LineBlocks<'a> {
     path: &'a Path,
     /// Description of the file in messages.
     expected: &'a str,
@@ -49,58 +49,60 @@ pub(crate) struct Blocks<'a> {
     /// True if bytes beyond ASCII are Windows-1252, and not UTF-8.
     is_windows: Option<bool>,
     /// Positions in the file of the lines of a text that was made of it.
-    places: Option<Places>,
+    places: Option<SourceCells>,
     /// Notes and warnings on the file.
-    said: Said,
+    said: FileRemarks,
 }
 
 /// Notes and warnings on the interpretation of a file, a sentence each.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Said {
+pub(crate) struct FileRemarks {
     pub(crate) notes: Vec<String>,
     pub(crate) warnings: Vec<String>,
 }
 
-impl<'a> Blocks<'a> {
+impl<'a> LineBlocks<'a> {
     /// The blocks of a file; `expected` describes it in messages.
     pub(crate) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
-        let source = TextSource::File(Hashing::new(source::open(path, expected, Limit::Table)?));
-        Ok(Blocks::new(path, expected, source, BLOCK))
+        let source =
+            TextSource::File(HashingReader::new(source::open(path, expected, ResourceLimit::Table)?));
+        Ok(LineBlocks::new(path, expected, source, BLOCK))
     }
 
     /// The blocks of a file, or of the table that the files of a folder make.
     pub(crate) fn open_or_join(path: &'a Path, expected: &'a str) -> Result<Self> {
         if !configurations::is_folder(path) {
-            return Blocks::open(path, expected);
+            return LineBlocks::open(path, expected);
         }
-        let Configurations { text, sha256, left } = configurations::read(path)?;
-        let mut blocks = Blocks::made(path, expected, Box::new(Cursor::new(text)), Some(sha256));
+        let ConfigurationFolder { text, sha256, left } = configurations::read(path)?;
+        let mut blocks =
+            LineBlocks::from_made_text(path, expected, Box::new(Cursor::new(text)), Some(sha256));
         blocks.said.warnings.extend(left.iter().map(ToString::to_string));
         Ok(blocks)
     }
 
     /// The blocks of a text that was made of a file or a folder, with the checksum of its bytes.
-    pub(crate) fn made(
+    pub(crate) fn from_made_text(
         path: &'a Path,
         expected: &'a str,
         text: Box<dyn Read + Send>,
         sha256: Option<String>,
     ) -> Self {
-        Blocks::new(path, expected, TextSource::Made(text, sha256), BLOCK)
+        LineBlocks::new(path, expected, TextSource::Made(text, sha256), BLOCK)
     }
 
     /// Adds the positions of its lines, and the notes and warnings.
-    pub(crate) fn with_places(self, places: Places, said: Said) -> Self {
-        Blocks { places: Some(places), said, ..self }
+    pub(crate) fn with_places(self, places: SourceCells, said: FileRemarks) -> Self {
+        LineBlocks { places: Some(places), said, ..self }
     }
 
     /// The blocks of an input that is open.
     pub(crate) fn of_input(path: &'a Path, expected: &'a str, input: Input) -> Self {
-        Blocks::new(path, expected, TextSource::File(Hashing::new(input)), BLOCK)
+        LineBlocks::new(path, expected, TextSource::File(HashingReader::new(input)), BLOCK)
     }
 
     /// The positions of the lines in the file of which they were made.
-    pub(crate) fn places(&self) -> Option<&Places> {
+    pub(crate) fn places(&self) -> Option<&SourceCells> {
         self.places.as_ref()
     }
 
@@ -110,18 +112,23 @@ impl<'a> Blocks<'a> {
     }
 
     /// Takes the notes and warnings on the file.
-    pub(crate) fn said(&mut self) -> Said {
+    pub(crate) fn take_remarks(&mut self) -> FileRemarks {
         std::mem::take(&mut self.said)
     }
 
     /// The blocks of a text with the name `path` in messages, of `size` bytes per read.
     #[cfg(test)]
-    pub(crate) fn sized(path: &'a Path, text: &[u8], size: usize) -> Self {
-        Blocks::new(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
+    pub(crate) fn with_block_size(path: &'a Path, text: &[u8], size: usize) -> Self {
+        LineBlocks::new(
+            path,
+            "a table (CSV)",
+            TextSource::Made(Box::new(Cursor::new(text.to_vec())), None),
+            size,
+        )
     }
 
     fn new(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
-        Blocks {
+        LineBlocks {
             path,
             expected,
             source,
@@ -134,7 +141,7 @@ impl<'a> Blocks<'a> {
             passed: None,
             is_windows: None,
             places: None,
-            said: Said::default(),
+            said: FileRemarks::default(),
         }
     }
 
@@ -155,7 +162,7 @@ impl<'a> Blocks<'a> {
                 TextSource::File(file) => file.take(size).read_to_end(&mut bytes),
                 TextSource::Made(text, _) => text.take(size).read_to_end(&mut bytes),
             };
-            let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
+            let more = more.map_err(|error| unreadable_error(self.path, &error, self.expected))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
             if let Some(end) = end {
                 self.rest.extend(bytes.drain(known + end + 1..));
@@ -180,7 +187,7 @@ impl<'a> Blocks<'a> {
         }
         let is_first = self.newline.is_none();
         if is_first && is_utf16(&bytes) {
-            bytes = self.decoded(bytes)?;
+            bytes = self.decode_utf16(bytes)?;
         }
         if is_first {
             self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
@@ -222,16 +229,18 @@ impl<'a> Blocks<'a> {
     }
 
     /// The whole text of UTF-16 as UTF-8; it becomes the source, without its first block, which is returned.
-    fn decoded(&mut self, mut bytes: Vec<u8>) -> Result<Vec<u8>> {
+    fn decode_utf16(&mut self, mut bytes: Vec<u8>) -> Result<Vec<u8>> {
         bytes.append(&mut self.rest);
-        let most = Limit::Text.most();
+        let most = ResourceLimit::Text.value();
         let more = match &mut self.source {
             TextSource::File(file) => file.take(most).read_to_end(&mut bytes),
             TextSource::Made(text, _) => text.take(most).read_to_end(&mut bytes),
         };
-        more.map_err(|error| unreadable(self.path, &error, self.expected))?;
+        more.map_err(|error| unreadable_error(self.path, &error, self.expected))?;
         if bytes.len() as u64 > most {
-            return Err(ErrorKind::File.error(Limit::Text.exceeded("UTF-16")).in_file(self.path));
+            return Err(ErrorKind::File
+                .error(ResourceLimit::Text.exceeded_error("UTF-16"))
+                .in_file(self.path));
         }
         let text = of_utf16(&bytes).map_err(|(line, found)| {
             let message = format!("found {found}, expected UTF-16 text as before, or UTF-8");
@@ -254,8 +263,8 @@ impl<'a> Blocks<'a> {
         let mut all = String::new();
         loop {
             all.push_str(&self.text);
-            if all.len() as u64 > Limit::Text.most() {
-                let message = Limit::Text.exceeded("a file of this form");
+            if all.len() as u64 > ResourceLimit::Text.value() {
+                let message = ResourceLimit::Text.exceeded_error("a file of this form");
                 return Err(ErrorKind::File.error(message).in_file(self.path));
             }
             if !self.advance()? {
@@ -273,12 +282,12 @@ impl<'a> Blocks<'a> {
     }
 
     /// Makes the blocks keep the passed text until it is taken.
-    pub(crate) fn keeping(self) -> Self {
-        Blocks { passed: Some(String::new()), ..self }
+    pub(crate) fn with_passed_text(self) -> Self {
+        LineBlocks { passed: Some(String::new()), ..self }
     }
 
     /// Takes the text before the current block.
-    pub(crate) fn passed(&mut self) -> String {
+    pub(crate) fn take_passed_text(&mut self) -> String {
         self.passed.take().unwrap_or_default()
     }
 
@@ -304,7 +313,7 @@ mod tests {
 
     /// The lines without the first `skip`, and the number of blocks, if `size` bytes are read at a time.
     fn lines(text: &str, skip: usize, size: usize) -> (Vec<(usize, String)>, usize) {
-        let mut blocks = Blocks::sized(Path::new("x.csv"), text.as_bytes(), size);
+        let mut blocks = LineBlocks::with_block_size(Path::new("x.csv"), text.as_bytes(), size);
         let (mut found, mut count) = (Vec::new(), 0);
         while blocks.advance().unwrap() {
             count += 1;
@@ -359,9 +368,9 @@ mod tests {
             }
         }
         let path = Path::new("x.csv");
-        let source = TextSource::File(Hashing::new(Input::from_reader(Box::new(Broken))));
+        let source = TextSource::File(HashingReader::new(Input::from_reader(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
-        let error = Blocks::new(path, expected, source, BLOCK).advance().unwrap_err().to_string();
+        let error = LineBlocks::new(path, expected, source, BLOCK).advance().unwrap_err().to_string();
         assert_eq!(
             error,
             "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)"

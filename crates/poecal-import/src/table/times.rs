@@ -1,6 +1,6 @@
 //! Columns with the times of rows.
 
-use super::roles::{Role, plain};
+use super::roles::{ColumnRole, plain_letters};
 
 /// Units of times, with their sizes in seconds.
 const UNITS: [(&str, f64); 6] =
@@ -8,9 +8,9 @@ const UNITS: [(&str, f64); 6] =
 
 /// Unit, in seconds, of a column of times with this name and unit; `None` for another column.
 pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
-    let plain = plain(name);
+    let plain = plain_letters(name);
     let own = |unit: &str| UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(unit)).map(|it| it.1);
-    match (Role::Time.has(&plain), unit) {
+    match (ColumnRole::Time.has(&plain), unit) {
         (true, None) => Some(1.0),
         (true, Some(unit)) => own(unit),
         (false, None) => own(["timestamp", "time"].into_iter().find_map(|it| plain.strip_prefix(it))?),

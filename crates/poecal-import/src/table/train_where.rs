@@ -19,7 +19,7 @@ pub struct FitWhere {
 
 impl FitWhere {
     /// Index of the value that equals a cell.
-    pub(crate) fn matching(&self, cell: &str) -> Option<usize> {
+    pub(crate) fn matching_index(&self, cell: &str) -> Option<usize> {
         self.values.iter().position(|value| value == cell).or_else(|| {
             let number = number(cell)?;
             self.values.iter().position(|value| self::number(value) == Some(number))
@@ -55,11 +55,11 @@ mod tests {
     #[test]
     fn cells_compare_as_text_and_as_numbers() {
         let rule: FitWhere = "run=1, b".parse().unwrap();
-        assert_eq!(rule.matching("1.0"), Some(0));
-        assert_eq!(rule.matching("1,0"), Some(0));
-        assert_eq!(rule.matching("b"), Some(1));
-        assert_eq!(rule.matching("c"), None);
-        assert_eq!(rule.matching(""), None);
+        assert_eq!(rule.matching_index("1.0"), Some(0));
+        assert_eq!(rule.matching_index("1,0"), Some(0));
+        assert_eq!(rule.matching_index("b"), Some(1));
+        assert_eq!(rule.matching_index("c"), None);
+        assert_eq!(rule.matching_index(""), None);
     }
 
     #[test]

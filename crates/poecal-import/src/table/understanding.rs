@@ -7,11 +7,11 @@ use serde::Serialize;
 
 use super::cells::Separator;
 use super::cursor::Cursor;
-use super::inputs::{Input, InputSource, Range};
+use super::inputs::{InputSource, RowInput, ValueRange};
 use super::layout::{ColumnLayout, SetRule};
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
-use crate::table::Table;
+use crate::table::FileTable;
 use poecal_numerics::named_unit::UnitSource;
 use poecal_numerics::text::NamedLines;
 
@@ -74,11 +74,11 @@ pub struct FileUnderstanding {
 
 impl FileUnderstanding {
     /// The interpretation of a table, with its number of rows; the numbers of measurements follow.
-    pub(crate) fn new(table: &Table<'_>, cursor: &Cursor<'_>, rows: usize) -> Self {
+    pub(crate) fn new(table: &FileTable<'_>, cursor: &Cursor<'_>, rows: usize) -> Self {
         FileUnderstanding {
             path: table.header.path.to_path_buf(),
             form: table.form(),
-            understood: table.understood(),
+            understood: table.understood_form(),
             rows,
             points: 0,
             poses: 0,
@@ -100,13 +100,13 @@ impl FileUnderstanding {
 }
 
 /// Columns of our form with their sources.
-fn columns(table: &Table<'_>, layout: &ColumnLayout, ranges: &[Range]) -> Vec<ColumnUnderstanding> {
+fn columns(table: &FileTable<'_>, layout: &ColumnLayout, ranges: &[ValueRange]) -> Vec<ColumnUnderstanding> {
     let (header, sources) = (&table.header, table.sources());
     let text_of = |index: usize| {
         let own = &header.cells.get(index)?.text;
         Some(sources.and_then(|it| it.get(own)).unwrap_or(own).clone())
     };
-    let number = |(input, range): (&Input, &Range)| {
+    let number = |(input, range): (&RowInput, &ValueRange)| {
         let has_unit = input.unit.symbol() != "1";
         ColumnUnderstanding {
             name: input.name.clone(),

@@ -7,10 +7,10 @@ use super::columns::turns;
 use super::cursor::Cursor;
 use super::layout::ColumnLayout;
 use super::understanding::FileUnderstanding;
-use crate::read::Reader;
-use crate::table::Table;
+use crate::read::MeasurementReader;
+use crate::table::FileTable;
 use poecal_model::robot::Controller;
-use poecal_numerics::error::{ErrorKind, Result, shown};
+use poecal_numerics::error::{ErrorKind, Result, shorten_name};
 use poecal_numerics::text::NamedLines;
 
 /// Name of rows with some components of a position.
@@ -19,11 +19,11 @@ const COMPONENTS: &str = "single components";
 /// Largest number of ignored columns in a warning.
 const IGNORED_NAMED: usize = 30;
 
-impl Reader<'_> {
+impl MeasurementReader<'_> {
     /// Records the interpretation of a file.
     pub(crate) fn understand(
         &mut self,
-        table: &Table<'_>,
+        table: &FileTable<'_>,
         inputs: &Cursor<'_>,
         (first, rows, lost): (usize, usize, NamedLines),
     ) -> Result<()> {
@@ -35,7 +35,7 @@ impl Reader<'_> {
                 *(if seen.sees_orientation() { &mut poses } else { &mut points }) += 1;
             } else {
                 let is_part = seen.is_part_of_position();
-                let name = if is_part { COMPONENTS } else { seen.function().leading().name() };
+                let name = if is_part { COMPONENTS } else { seen.function().leading_quantity().name() };
                 *others.entry(name).or_default() += 1;
             }
         }
@@ -79,8 +79,8 @@ impl Reader<'_> {
             return;
         }
         let columns = layout.ignored.iter().take(IGNORED_NAMED).map(|(name, meant)| match meant {
-            Some(meant) => format!("`{}` (did you mean `{meant}`?)", shown(name)),
-            None => format!("`{}`", shown(name)),
+            Some(meant) => format!("`{}` (did you mean `{meant}`?)", shorten_name(name)),
+            None => format!("`{}`", shorten_name(name)),
         });
         let columns: Vec<String> = columns.collect();
         let more = match layout.ignored.len() - columns.len() {

@@ -1,17 +1,17 @@
 //! Measurement files of simulated rows.
 
-pub(crate) mod growing;
+pub(crate) mod growing_file;
 pub(crate) mod own_columns;
 pub(crate) mod own_rows;
-pub(crate) mod rewritten;
+pub(crate) mod rewriting;
 pub(crate) mod template;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use crate::table::kinds::{Kind, kinds};
+use crate::table::kinds::{FunctionKind, kinds};
 use crate::write::own_columns::{decimal, decimals, reading_header, reading_units, refuse_names};
-use crate::write::own_rows::{OwnColumn, OwnRows};
+use crate::write::own_rows::{OwnColumn, SessionTableRows};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Observation, Quantity};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -32,7 +32,7 @@ pub fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Resu
         OwnColumn::Instrument,
         OwnColumn::Target,
     ];
-    let rows = OwnRows::new(data, robot, &columns)?.rounded(noise);
+    let rows = SessionTableRows::new(data, robot, &columns)?.round_to_noise(noise);
     let mut out = format!("# {comment}\n{}\n", rows.header());
     for row in 0..data.len() {
         out += &rows.line(row, "");
@@ -46,13 +46,13 @@ const BEFORE: [&str; 3] = ["target", "pair", "instrument"];
 const AFTER: [&str; 7] = ["x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"];
 
 /// A column of a function's numbers, with the unit in which it is written.
-fn with_unit(kind: &Kind, name: &str) -> String {
-    format!("{name}[{}]", kind.function.leading().unit().symbol())
+fn with_unit(kind: &FunctionKind, name: &str) -> String {
+    format!("{name}[{}]", kind.function.leading_quantity().unit().symbol())
 }
 
 /// The columns of rows of other kinds, in the order of a file.
 fn other_columns() -> Vec<String> {
-    let own = |kind: Kind| {
+    let own = |kind: FunctionKind| {
         let place =
             kind.columns.places.last().into_iter().chain(kind.columns.word.as_ref().map(|(it, _)| it));
         let numbers = kind.columns.numbers.iter().map(|name| with_unit(&kind, name)).collect::<Vec<_>>();
@@ -122,7 +122,7 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
         place_cells(seen, noise, &mut cells)?;
         return Ok(cells);
     };
-    let quantity = kind.function.leading();
+    let quantity = kind.function.leading_quantity();
     let unit = NamedUnit::parse(quantity.unit().symbol(), quantity.unit())?;
     for (column, number) in kind.columns.numbers.iter().zip(numbers) {
         if kind.needs_numbers() || number != 0.0 {
@@ -187,9 +187,9 @@ mod tests {
     #[test]
     fn sessions_of_every_kind_read_back_the_same() {
         use crate::{ReadOptions, parse};
-        use poecal_model::simulate::{Kind, Simulation, elbow};
+        use poecal_model::simulate::{SessionKind, Simulation, elbow};
         let exact = Noise::new(0.0, 0.0);
-        for kind in Kind::all() {
+        for kind in SessionKind::all() {
             let simulation = Simulation {
                 count: 12,
                 noise_position_m: 0.0,
@@ -203,8 +203,11 @@ mod tests {
             assert_eq!((data.len(), data.further_readings()), (12, made.data.further_readings()));
             for (found, expected) in data.observations.iter().zip(&made.data.observations) {
                 // Faces are on their planes, up or down.
-                let (metres, radians) = found.measurement.apart(&expected.measurement).unwrap();
-                assert!(metres < 1e-12 && (radians < 1e-7 || kind == Kind::FLUSH), "{metres} {radians}");
+                let (metres, radians) = found.measurement.distance_and_angle(&expected.measurement).unwrap();
+                assert!(
+                    metres < 1e-12 && (radians < 1e-7 || kind == SessionKind::FLUSH),
+                    "{metres} {radians}"
+                );
                 assert_eq!(found.station, expected.station);
             }
         }

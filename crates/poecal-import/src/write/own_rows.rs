@@ -44,7 +44,7 @@ impl OwnColumn {
 }
 
 /// The rows of a session in the columns of a table.
-pub(crate) struct OwnRows<'a> {
+pub(crate) struct SessionTableRows<'a> {
     data: &'a Dataset,
     columns: Vec<OwnColumn>,
     units: Vec<NamedUnit>,
@@ -56,7 +56,7 @@ pub(crate) struct OwnRows<'a> {
     is_to_fill: bool,
 }
 
-impl<'a> OwnRows<'a> {
+impl<'a> SessionTableRows<'a> {
     /// The rows in those of these columns that they need, with exact numbers.
     ///
     /// # Errors
@@ -79,7 +79,7 @@ impl<'a> OwnRows<'a> {
         let names = columns.iter().flat_map(|it| it.names());
         let names: Vec<&str> = names.map(|it| it.split('[').next().unwrap_or(it)).collect();
         refuse_names(data.reading_names(), &names)?;
-        Ok(OwnRows {
+        Ok(SessionTableRows {
             data,
             columns,
             units: reading_units(data.reading_names(), robot)?,
@@ -91,10 +91,10 @@ impl<'a> OwnRows<'a> {
     }
 
     /// Rounds measured numbers to less than a thousandth of their noise.
-    pub(crate) fn rounded(self, noise: &Noise) -> Self {
+    pub(crate) fn round_to_noise(self, noise: &Noise) -> Self {
         let position = decimals(self.mm.from_si(noise[Quantity::Position]));
         // A rotation turns the quaternion by half its angle.
-        OwnRows { decimals: [position, decimals(noise[Quantity::Rotation] / 2.0)], ..self }
+        SessionTableRows { decimals: [position, decimals(noise[Quantity::Rotation] / 2.0)], ..self }
     }
 
     /// Makes a form to fill in: `id` and empty cells for the measurements, with orientations if `sees_orientation`.
@@ -102,7 +102,7 @@ impl<'a> OwnRows<'a> {
         self.columns.insert(0, OwnColumn::Id);
         self.columns.retain(|it| *it != OwnColumn::Orientation);
         self.columns.extend(sees_orientation.then_some(OwnColumn::Orientation));
-        OwnRows { is_to_fill: true, ..self }
+        SessionTableRows { is_to_fill: true, ..self }
     }
 
     /// The line of the names of the columns.
@@ -200,7 +200,7 @@ pub fn imported_table(file: &MeasurementFile, robot: &Robot) -> Result<String> {
     ];
     let data = &file.data;
     refuse_other_rows(data)?;
-    let rows = OwnRows::new(data, robot, &COLUMNS)?;
+    let rows = SessionTableRows::new(data, robot, &COLUMNS)?;
     let mut out = rows.header() + "\n";
     for row in 0..data.len() {
         out += &rows.line(row, data.ids.get(row).map_or("", String::as_str));
@@ -215,7 +215,7 @@ fn refuse_other_rows(data: &Dataset) -> Result<()> {
     if let Some(other) = data.observations.iter().find(|row| !is_place(row)) {
         let message = format!(
             "found a measurement of {}, expected positions and poses, which alone are written as a table of our own: name the files in each command",
-            other.measurement.function().leading().name()
+            other.measurement.function().leading_quantity().name()
         );
         let error = ErrorKind::Measurement.error(message);
         return Err(match data.files.get(other.source.file as usize) {

@@ -8,13 +8,13 @@ use rand_core::SeedableRng as _;
 use crate::write::own_columns::{decimal, header, reading_header, reading_units, refuse_names};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Configurations, Kind};
+use poecal_model::simulate::{Configurations, SessionKind};
 use poecal_numerics::error::Result;
-use poecal_numerics::text::visible;
-use poecal_plan::plan::{CYCLE, Plan, RETURN_EVERY, RowPart, TestCube};
+use poecal_numerics::text::escape_invisible;
+use poecal_plan::plan::{CYCLE, Plan, RETURN_EVERY, RowPurpose, TestCube};
 
 /// A measurement file without rows: the columns for this robot, with instructions as comments.
-pub fn template(robot: &Robot, kind: Kind) -> Result<String> {
+pub fn template(robot: &Robot, kind: SessionKind) -> Result<String> {
     let names = robot.reading_names();
     let units = reading_units(&names, robot)?;
     let mut columns = if kind.has_device() {
@@ -43,7 +43,11 @@ pub fn template(robot: &Robot, kind: Kind) -> Result<String> {
     {
         if !mounts.is_empty() {
             let names: Vec<&str> = mounts.iter().map(|mount| mount.name.as_str()).collect();
-            let _ = writeln!(text, "# {column}  which {does} in this row: {}", visible(&names.join(", ")));
+            let _ = writeln!(
+                text,
+                "# {column}  which {does} in this row: {}",
+                escape_invisible(&names.join(", "))
+            );
         }
     }
     text.push_str(
@@ -102,8 +106,8 @@ pub fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
 
 /// Comments above a planned list.
 fn about(found: &Plan) -> [String; 4] {
-    let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
-    let [fit, judge] = [count(RowPart::Fit), count(RowPart::Judge)];
+    let count = |part: RowPurpose| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
+    let [fit, judge] = [count(RowPurpose::Fit), count(RowPurpose::Judge)];
     let [calibrated, corrected] = [found.expected.calibrated_m(), found.expected.corrected_m()];
     [
         format!("{fit} configurations to measure and fit, then {judge} at random to judge by (held_out), each set in a short order of travel."),
@@ -125,7 +129,7 @@ pub fn planned_table(robot: &Robot, found: &Plan) -> Result<String> {
     let mut text = String::new();
     for comment in about(found) {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "# {}", visible(&comment));
+        let _ = writeln!(text, "# {}", escape_invisible(&comment));
     }
     let _ = writeln!(text, "id,set,returns,{}", reading_header(&names, &units));
     for (row, planned) in found.rows.iter().enumerate() {
@@ -164,8 +168,8 @@ mod tests {
     fn the_columns_are_those_of_the_robot() {
         let last = |kind| template(&scara(), kind).unwrap().lines().last().unwrap().to_owned();
         let joints = "joint1[deg],joint2[deg],joint3[mm],joint4[deg]";
-        assert_eq!(last(Kind::POINT), format!("{joints},x[mm],y[mm],z[mm]"));
-        assert_eq!(last(Kind::POSE), format!("{joints},x[mm],y[mm],z[mm],qx,qy,qz,qw"));
+        assert_eq!(last(SessionKind::POINT), format!("{joints},x[mm],y[mm],z[mm]"));
+        assert_eq!(last(SessionKind::POSE), format!("{joints},x[mm],y[mm],z[mm],qx,qy,qz,qw"));
     }
 
     #[test]

@@ -108,7 +108,7 @@ fn keys_that_scale_or_shift_are_refused_and_others_named() {
 #[test]
 fn corners_outside_the_pictures_of_the_lens_are_refused_with_how_the_sizes_are_related() {
     let session = Session::new();
-    let files = session.ours();
+    let files = session.own_files();
     let files = as_texts(&files);
     let with = |size_px: [u32; 2]| {
         let camera = &session.options.cameras[0];

@@ -1,23 +1,23 @@
 //! Single components of positions, and noise that is not the same in all directions (theory.md §4 (15), (17a)).
 
 use nalgebra::{Matrix3, Vector3};
-use poecal_calibrate::{Calibration, CalibrationOptions, Robust, calibrate};
+use poecal_calibrate::{Calibration, CalibrationOptions, RobustLoss, calibrate};
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_import::{InstrumentNoise, MeasurementFile, ReadOptions, parse};
 use poecal_model::measurement::{Dataset, Measurement, Noise, NoiseShape, Quantity};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow};
 use poecal_numerics::solve::LeastSquares;
 use poecal_testing::sessions::geometry;
 
-fn session(count: usize, seed: u64, noise_position_m: f64) -> Simulated {
+fn session(count: usize, seed: u64, noise_position_m: f64) -> SimulationResult {
     let simulation = Simulation { count, seed, noise_position_m, ..Simulation::default() };
-    simulation.run(&elbow(), Kind::POINT).unwrap()
+    simulation.run(&elbow(), SessionKind::POINT).unwrap()
 }
 
 fn fit(robot: &Robot, data: &Dataset) -> Calibration {
-    let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
+    let options = CalibrationOptions { robust: RobustLoss::Off, ..geometry() };
     calibrate(robot, data, &options).unwrap()
 }
 
@@ -69,13 +69,13 @@ fn the_cost_is_that_of_the_covariance() {
     let sight = Vector3::new(0.3, -0.5, 0.8).normalize();
     let mut data = made.data.clone();
     for row in 0..data.len() {
-        data.state_noise(row, NoiseShape::across(&sight, 1e-5, 7e-5));
+        data.state_noise(row, NoiseShape::from_sight(&sight, 1e-5, 7e-5));
     }
     let along = sight * sight.transpose();
     let covariance = along * 1e-10 + (Matrix3::identity() - along) * 49e-10;
-    let packed = Packed::from_dataset(&made.nominal, &data);
+    let packed = PackedValues::from_dataset(&made.nominal, &data);
     let session = Session::new(&made.nominal, &data, &packed, true);
-    let estimate = poecal_fit::state::delivered(&made.nominal, &data);
+    let estimate = poecal_fit::state::nominal_estimate(&made.nominal, &data);
     let errors = session.errors(&data.all_rows(), &estimate);
     let inverse = covariance.try_inverse().unwrap();
     let expected: f64 =
@@ -119,7 +119,7 @@ fn noise_is_stated_by_component_and_by_expanded_uncertainty() {
         let observation = &data.observations[row];
         let sigma = observation.stated.get(Quantity::Position).unwrap();
         assert!((sigma / expected - 1.0).abs() < 1e-12, "{sigma}");
-        let whitened = data.noise_shape(observation).unwrap().whitened(&Vector3::repeat(1.0)) / sigma;
+        let whitened = data.noise_shape(observation).unwrap().whiten_vector(&Vector3::repeat(1.0)) / sigma;
         for (one, expected) in whitened.iter().zip(sigmas).filter(|(_, sigma)| sigma.is_finite()) {
             assert!((one * expected - 1.0).abs() < 1e-12);
         }
@@ -160,7 +160,7 @@ fn noise_of_an_instrument_grows_across_its_line_of_sight() {
     };
     let data = of("tracker:10um+5um/m").unwrap().data;
     let sigma = data.observations[0].stated.get(Quantity::Position).unwrap();
-    let one = data.noise_shape(&data.observations[0]).unwrap().whitened(&Vector3::repeat(1.0)) / sigma;
+    let one = data.noise_shape(&data.observations[0]).unwrap().whiten_vector(&Vector3::repeat(1.0)) / sigma;
     let across = 1e-5f64.hypot(2e-5);
     assert!((one.z * 1e-5 - 1.0).abs() < 1e-12 && (one.x * across - 1.0).abs() < 1e-12);
     assert_eq!(data.observations[1].stated.get(Quantity::Position), None);
@@ -191,8 +191,8 @@ fn a_fit_that_knows_the_noise_is_better() {
         let noise =
             Simulation { count: 120, seed: 900 + seed, noise_position_m: 1.0, ..Simulation::default() };
         // Unit noise of another session, made along and across the line of sight.
-        let unit = noise.run(&elbow(), Kind::POINT).unwrap();
-        let clean = Simulation { noise_position_m: 0.0, ..noise }.run(&elbow(), Kind::POINT).unwrap();
+        let unit = noise.run(&elbow(), SessionKind::POINT).unwrap();
+        let clean = Simulation { noise_position_m: 0.0, ..noise }.run(&elbow(), SessionKind::POINT).unwrap();
         let (mut known, mut alike) = (exact.data.clone(), exact.data.clone());
         for row in 0..exact.data.len() {
             let place = |data: &Dataset| data.observations[row].measurement.position().unwrap();
@@ -202,15 +202,15 @@ fn a_fit_that_knows_the_noise_is_better() {
             let seen = Measurement::point(place(&exact.data) + shift);
             known.observations[row].measurement = seen;
             alike.observations[row].measurement = seen;
-            known.state_noise(row, NoiseShape::across(&sight, along, across));
+            known.state_noise(row, NoiseShape::from_sight(&sight, along, across));
         }
         let further =
             Simulation { count: 200, seed: 40 + seed, noise_position_m: 0.0, ..Simulation::default() }
-                .held_out(&exact, Kind::POINT, 200)
+                .held_out(&exact, SessionKind::POINT, 200)
                 .unwrap();
         let error = |data: &Dataset| {
             let found = fit(&exact.nominal, data);
-            let packed = Packed::from_dataset(&exact.nominal, &further);
+            let packed = PackedValues::from_dataset(&exact.nominal, &further);
             let session = Session::new(&exact.nominal, &further, &packed, true);
             let errors = session.errors(&further.all_rows(), &found.models.calibrated);
             let squares: f64 = errors.iter().map(|error| error.position_m().norm_squared()).sum();

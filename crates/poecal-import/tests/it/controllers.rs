@@ -5,11 +5,11 @@ use poecal_arm::lie::{Screw, rotation};
 use poecal_import::{ColumnMap, Join, MeasurementFile, ReadOptions, read, read_joints};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Joint, Robot};
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_testing::files::Folder;
 
 fn session() -> Dataset {
-    Simulation { count: 9, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap().data
+    Simulation { count: 9, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap().data
 }
 
 /// Readings in degrees with five digits.
@@ -212,7 +212,7 @@ fn counts_of_an_encoder_are_named_with_their_factor() {
     }
 }
 
-fn joined(joints: &str, seen: &str) -> MeasurementFile {
+fn join_files(joints: &str, seen: &str) -> MeasurementFile {
     let folder = Folder::new();
     let paths = [folder.write("joints.csv", joints), folder.write("vicon.csv", seen)];
     let options = ReadOptions { join: Some(Join::Rows), ..ReadOptions::default() };
@@ -241,7 +241,7 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
     }
     // Another part of the export follows, behind a line without cells.
     segments += "\r\nDevices\r\n1000\r\n,,Force\r\nFrame,Sub Frame,Fx\r\n,,N\r\n1,0,3.5\r\n";
-    let found = joined(&joints, &segments);
+    let found = join_files(&joints, &segments);
     println!("{:?}", found.notes);
     assert_eq!(found.data.len(), poses.len());
     for (own, expected) in found.data.observations.iter().zip(&poses) {
@@ -249,7 +249,7 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
         let off = (own.translation - expected.translation).norm() + (own.rotation - expected.rotation).norm();
         assert!(off < 1e-9, "{off}");
     }
-    let both = joined(&joints, &format!("{segments}\r\n{markers}"));
+    let both = join_files(&joints, &format!("{segments}\r\n{markers}"));
     assert!(
         both.notes.iter().any(|it| it.contains("read Segments, left out Trajectories")),
         "{:?}",
@@ -261,7 +261,7 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
     let options = ReadOptions { join: Some(Join::Rows), ..ReadOptions::default() };
     let error = read(&paths, &elbow(), &options).unwrap_err().to_string();
     assert!(error.contains("vicon.csv:5: found the units `mm`, `mm/s` of positions"), "{error}");
-    let found = joined(&joints, &markers);
+    let found = join_files(&joints, &markers);
     assert_eq!((found.data.len(), found.data.targets.len()), (2 * poses.len(), 2));
     let own = found.data.observations[0].measurement.pose().translation;
     assert!((own - poses[0].translation).norm() < 1e-9);

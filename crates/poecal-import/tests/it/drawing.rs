@@ -5,14 +5,14 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::{BlockChoice, Calibration, CalibrationOptions, calibrate};
 use poecal_fit::parameters::{Parameter, ScrewAxis, TargetFrame, TargetPlace};
 use poecal_fit::problem::{Layout, Prior};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session, delivered};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session, nominal_estimate};
 use poecal_formats::robot_toml;
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::{Robot, Tolerance};
 use poecal_model::simulate::{
-    Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
+    SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
 };
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -49,7 +49,7 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
         for base_free in [true, false] {
             let data = two_targets(&robot);
-            let packed = Packed::from_dataset(&robot, &data);
+            let packed = PackedValues::from_dataset(&robot, &data);
             let session = Session::new(&robot, &data, &packed, base_free);
             let targets = [
                 Parameter::TargetPlace(TargetPlace { target: 0 }),
@@ -57,7 +57,7 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
             ];
             let layout = Layout::new(screws(&robot).into_iter().chain(targets).collect(), 0.4);
             let prior = Prior::from_session(&session, Tolerance { angle_rad: 0.01, length_m: 0.004 });
-            let nominal = delivered(&robot, &data);
+            let nominal = nominal_estimate(&robot, &data);
             let mut generator = ChaCha8Rng::seed_from_u64(5);
             let n = layout.dim();
             let step: Vec<f64> = (0..n).map(|_| 0.05 * random::normal(&mut generator)).collect();
@@ -68,7 +68,7 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
                 prior.cost(&layout.retract(from, &step))
             };
             const H: f64 = 1e-5;
-            let (mut at_moved, mut at_nominal) = (Normal::new(n), Normal::new(n));
+            let (mut at_moved, mut at_nominal) = (NormalEquations::new(n), NormalEquations::new(n));
             prior.add(&moved, &layout, 1.0, &mut at_moved);
             prior.add(&nominal, &layout, 1.0, &mut at_nominal);
             let largest = at_moved.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
@@ -107,20 +107,26 @@ fn moving_the_base_costs_nothing_where_it_is_a_choice() {
     let step: Vec<f64> = (0..24).map(|_| 0.01 * random::normal(&mut generator)).collect();
     let moved = layout(&robot).retract(&nominal, &step);
     let motion = Pose::new(rotation::exp(&Vector3::new(0.3, -0.8, 0.5)), Vector3::new(0.2, -0.1, 0.4));
-    let (here, there) = (prior.cost(&moved), prior.cost(&moved.rebased(&motion)));
+    let (here, there) = (prior.cost(&moved), prior.cost(&moved.rebase(&motion)));
     println!("{here} {there}");
     assert!((here / there - 1.0).abs() < 1e-9);
 }
 
 /// A session of configurations: points or poses of an actual robot, observed by a device at the base.
-fn observed(robot: &Robot, actual: &Robot, kind: Kind, readings: &[Vec<f64>], seed: u64) -> Dataset {
+fn observe_robot(
+    robot: &Robot,
+    actual: &Robot,
+    kind: SessionKind,
+    readings: &[Vec<f64>],
+    seed: u64,
+) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let mut data = Dataset::new(robot.reading_names());
     for (recorded, real) in readings.iter().map(|row| (row, row)) {
         let seen = actual.forward_kinematics(real);
         let position = seen.translation + random::normal_vector(&mut generator) * NOISE_M;
         let turn = rotation::exp(&(random::normal_vector(&mut generator) * NOISE_RAD));
-        let measurement = if kind == Kind::POINT {
+        let measurement = if kind == SessionKind::POINT {
             Measurement::point(position)
         } else {
             Measurement::of_pose(&Pose::new(turn * seen.rotation, position))
@@ -147,25 +153,25 @@ fn configurations(
         .collect()
 }
 
-fn actual(robot: &Robot, seed: u64) -> Robot {
-    Simulation::default().perturbed(robot, &mut ChaCha8Rng::seed_from_u64(seed ^ 0xac))
+fn perturb_robot(robot: &Robot, seed: u64) -> Robot {
+    Simulation::default().perturb(robot, &mut ChaCha8Rng::seed_from_u64(seed ^ 0xac))
 }
 
-fn fitted(robot: &Robot, data: &Dataset) -> Calibration {
+fn calibrate_rows(robot: &Robot, data: &Dataset) -> Calibration {
     let options = CalibrationOptions { held_out: Some(0.0), ..geometry() };
     calibrate(robot, data, &options).unwrap()
 }
 
 /// Mean distance of a model's predictions from the truth, metres, with the frame and the tool that it was fitted with.
-fn missed(robot: &Robot, truth: &Robot, estimate: &Estimate, seed: u64) -> f64 {
+fn mean_missed_distance(robot: &Robot, truth: &Robot, estimate: &Estimate, seed: u64) -> f64 {
     missed_in(robot, truth, estimate, &configurations(robot, 200, seed ^ 0x77, |_, _| {}))
 }
 
 /// The mean distance in these configurations.
 fn missed_in(robot: &Robot, truth: &Robot, estimate: &Estimate, readings: &[Vec<f64>]) -> f64 {
     let readings = readings.concat();
-    let packed = Packed::new(robot, &readings, robot.joints.len());
-    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+    let packed = PackedValues::new(robot, &readings, robot.joints.len());
+    let (linkage, mut chain) = (Linkage::new(estimate), RowChain::default());
     let rows = readings.chunks(robot.joints.len()).enumerate();
     rows.map(|(row, values)| {
         chain.evaluate(&linkage, &packed, row, 0);
@@ -187,8 +193,8 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             let readings = configurations(&robot, 60, seed, |row, generator| {
                 row[3] = 0.7 + jitter * random::normal(generator);
             });
-            let kind = if seed % 4 < 2 { Kind::POSE } else { Kind::POINT };
-            let truth = actual(&robot, seed);
+            let kind = if seed % 4 < 2 { SessionKind::POSE } else { SessionKind::POINT };
+            let truth = perturb_robot(&robot, seed);
             // The encoder's value is noise: the joint does not move.
             let real: Vec<Vec<f64>> = readings
                 .iter()
@@ -198,12 +204,12 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
                     row
                 })
                 .collect();
-            let seen = observed(&robot, &truth, kind, &real, seed);
+            let seen = observe_robot(&robot, &truth, kind, &real, seed);
             let mut data = Dataset::new(robot.reading_names());
             for (row, observation) in readings.iter().zip(&seen.observations) {
                 data.push(row, None, observation.measurement).unwrap();
             }
-            let found = fitted(&robot, &data);
+            let found = calibrate_rows(&robot, &data);
             let joint = &found.trust.joints[3];
             println!(
                 "{seed}: {:.3} deg, {:.2} mm, {} iterations, {:?}",
@@ -232,9 +238,10 @@ fn an_axis_through_the_target_stays_at_the_drawing() {
                 error_position_m: 1e-4,
                 ..Simulation::default()
             };
-            let truth = simulation.perturbed(&robot, &mut ChaCha8Rng::seed_from_u64(11));
+            let truth = simulation.perturb(&robot, &mut ChaCha8Rng::seed_from_u64(11));
             let readings = configurations(&robot, 60, 3, |_, _| {});
-            let found = fitted(&robot, &observed(&robot, &truth, Kind::POINT, &readings, seed));
+            let found =
+                calibrate_rows(&robot, &observe_robot(&robot, &truth, SessionKind::POINT, &readings, seed));
             (
                 found.trust.joints[5].tilt_rad.to_degrees(),
                 found.identifiability.rank,
@@ -273,8 +280,9 @@ fn few_poses_of_poor_orientation_are_never_worse_than_registered() {
                 error_position_m: 1e-3,
                 ..Simulation::default()
             };
-            let truth = simulation.perturbed(&robot, &mut generator);
-            let found = fitted(&robot, &observed(&robot, &truth, Kind::POSE, &readings, seed));
+            let truth = simulation.perturb(&robot, &mut generator);
+            let found =
+                calibrate_rows(&robot, &observe_robot(&robot, &truth, SessionKind::POSE, &readings, seed));
             let registered = missed_in(&robot, &truth, &found.models.registered, &others);
             let calibrated = missed_in(&robot, &truth, &found.models.calibrated, &others);
             (calibrated > registered).then(|| {
@@ -300,15 +308,18 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
                     let t = if circle {
                         f64::from(k) / 60.0 * 6.0
                     } else {
-                        3.0 * random::uniform(&mut generator) - 1.5
+                        3.0 * random::uniform_number(&mut generator) - 1.5
                     };
-                    let bend = if circle { 0.6 } else { 0.3 + 0.6 * random::uniform(&mut generator) };
+                    let bend = if circle { 0.6 } else { 0.3 + 0.6 * random::uniform_number(&mut generator) };
                     // The orientation is constant: joints 2, 3 and 5 add up, joint 6 compensates joint 1.
                     vec![0.3 * t, -0.4 - bend, 0.9 + 0.5 * bend, 0.0, 0.2 - 0.5 * bend, -0.3 * t]
                 })
                 .collect();
-            let kind = if seed % 4 < 2 { Kind::POSE } else { Kind::POINT };
-            let found = fitted(&robot, &observed(&robot, &actual(&robot, seed), kind, &readings, seed));
+            let kind = if seed % 4 < 2 { SessionKind::POSE } else { SessionKind::POINT };
+            let found = calibrate_rows(
+                &robot,
+                &observe_robot(&robot, &perturb_robot(&robot, seed), kind, &readings, seed),
+            );
             println!(
                 "{seed}: {} iterations, {:?}, rank {}",
                 found.solver.iterations, found.solver.termination, found.identifiability.rank
@@ -326,7 +337,7 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
 #[test]
 fn what_the_data_tell_is_not_touched() {
     let robot = elbow();
-    for kind in [Kind::POSE, Kind::POINT] {
+    for kind in [SessionKind::POSE, SessionKind::POINT] {
         let sessions = trials(150);
         let sums = (sessions.seeds())
             .into_par_iter()
@@ -345,7 +356,7 @@ fn what_the_data_tell_is_not_touched() {
                 [Some(Tolerance::default()), None].map(|tolerance| {
                     let options = CalibrationOptions { held_out: Some(0.0), tolerance, ..geometry() };
                     let found = calibrate(&robot, &made.data, &options).unwrap();
-                    missed(&robot, &made.actual, &found.models.calibrated, seed).powi(2)
+                    mean_missed_distance(&robot, &made.actual, &found.models.calibrated, seed).powi(2)
                 })
             })
             .reduce(|| [0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
@@ -356,7 +367,7 @@ fn what_the_data_tell_is_not_touched() {
             sessions.count
         );
         // In one session the ratio differs by some per cent.
-        assert!(sums[0] < (1.01 + sessions.more(0.05)) * sums[1]);
+        assert!(sums[0] < (1.01 + sessions.tolerance_factor(0.05)) * sums[1]);
     }
     let far = Simulation {
         count: 60,
@@ -365,7 +376,7 @@ fn what_the_data_tell_is_not_touched() {
         error_position_m: 0.06,
         ..Simulation::default()
     };
-    let made = far.run(&robot, Kind::POSE).unwrap();
+    let made = far.run(&robot, SessionKind::POSE).unwrap();
     let found = calibrate(&robot, &made.data, &geometry()).unwrap();
     let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     println!("errors of 17 deg and 60 mm: {rms:.4} mm");
@@ -419,7 +430,7 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
             let down = FRAC_PI_2 + 5e-6 * random::normal(generator);
             readings[4] = (down - pitch(1) * readings[1] - pitch(2) * readings[2]) / pitch(4);
         });
-        let data = observed(&robot, &robot, Kind::POINT, &rows, seed);
+        let data = observe_robot(&robot, &robot, SessionKind::POINT, &rows, seed);
         for (open, far) in far.iter_mut().enumerate() {
             let free = if open == 1 { vec!["targets".to_owned()] } else { Vec::new() };
             let blocks = BlockChoice { free, fix: Vec::new() };
@@ -441,7 +452,7 @@ fn cross_validation_says_the_error_of_other_rows_where_little_is_determined() {
     let robot = elbow();
     let mut ratios = Vec::new();
     for seed in trials(8).seeds() {
-        let truth = actual(&robot, seed);
+        let truth = perturb_robot(&robot, seed);
         let narrow = |readings: &mut Vec<f64>, generator: &mut ChaCha8Rng| {
             for (k, value) in readings.iter_mut().enumerate() {
                 let spread = if k == 0 { 1e-4 } else { 0.1 };
@@ -450,13 +461,13 @@ fn cross_validation_says_the_error_of_other_rows_where_little_is_determined() {
         };
         let session = |seed: u64, count: usize| {
             let rows = configurations(&robot, count, seed, narrow);
-            observed(&robot, &truth, Kind::POINT, &rows, seed)
+            observe_robot(&robot, &truth, SessionKind::POINT, &rows, seed)
         };
         let data = session(seed, 120);
-        let found = fitted(&robot, &data);
+        let found = calibrate_rows(&robot, &data);
         let validated = found.trust.cross_validation.as_ref().unwrap().random.rms.lead();
         let fresh = session(seed + 1000, 200);
-        let packed = Packed::from_dataset(&robot, &fresh);
+        let packed = PackedValues::from_dataset(&robot, &fresh);
         let of_fresh = Session::new(&robot, &fresh, &packed, true);
         let errors = of_fresh.errors(&fresh.all_rows(), &found.models.calibrated);
         let squares: f64 = errors.iter().map(|it| it.position_m().norm_squared()).sum();

@@ -32,9 +32,10 @@ impl Session {
         };
         let board = read_boards(BOARD).unwrap().remove(0);
         let still = CommonError { shift_m: 0.0, turn_rad: 0.0, ..CommonError::default() };
-        let usual = PictureSimulation { common: still, ..PictureSimulation::usual(session, true) };
+        let usual =
+            PictureSimulation { common: still, ..PictureSimulation::with_usual_camera(session, true) };
         let lens = usual.lens;
-        let made = usual.before(board.clone(), lens).run(&elbow()).unwrap();
+        let made = usual.with_board_and_lens(board.clone(), lens).run(&elbow()).unwrap();
         let options = ReadOptions {
             cameras: made.data.pictures.cameras.clone(),
             boards: vec![board],
@@ -106,7 +107,7 @@ impl Session {
     }
 
     /// The files in our own form.
-    pub(crate) fn ours(&self) -> [(&'static str, String); 2] {
+    pub(crate) fn own_files(&self) -> [(&'static str, String); 2] {
         let corners = self.corners("image,target,u[px],v[px]", |at, corner| {
             format!("{at:03}.png,corner{},{:.4},{:.4}", corner.point, corner.pixel.x, corner.pixel.y)
         });
@@ -119,7 +120,7 @@ pub(crate) fn as_texts<'a>(files: &'a [(&'a str, String)]) -> Vec<(&'a str, &'a 
 }
 
 /// Largest difference of corners and readings of two files, pixels and radians.
-fn apart(one: &MeasurementFile, other: &MeasurementFile) -> (f64, f64) {
+fn largest_differences(one: &MeasurementFile, other: &MeasurementFile) -> (f64, f64) {
     assert_eq!(one.data.len(), other.data.len());
     let (mut px, mut rad): (f64, f64) = (0.0, 0.0);
     for (at, (own, others)) in one.data.pictures.all.iter().zip(&other.data.pictures.all).enumerate() {
@@ -135,17 +136,17 @@ fn apart(one: &MeasurementFile, other: &MeasurementFile) -> (f64, f64) {
 }
 
 /// Held-out error of its calibration, pixels and mm.
-fn judged(session: &Session, file: &MeasurementFile) -> [f64; 2] {
+fn judge_session(session: &Session, file: &MeasurementFile) -> [f64; 2] {
     let found = calibrate(&session.robot, &file.data, &geometry()).unwrap();
     let pixels = found.accuracy.held_out.unwrap().calibrated.pixels.unwrap();
     [pixels.rms_px, pixels.rms_mm]
 }
 
 /// Compares a form with ours, and prints the result.
-pub(crate) fn same(session: &Session, what: &str, found: &MeasurementFile, digits: f64) {
-    let ours = session.read(&as_texts(&session.ours()), &session.options).unwrap();
-    let (px, rad) = apart(&ours, found);
-    let ([own_px, own_mm], [px_rms, mm]) = (judged(session, &ours), judged(session, found));
+pub(crate) fn assert_same(session: &Session, what: &str, found: &MeasurementFile, digits: f64) {
+    let ours = session.read(&as_texts(&session.own_files()), &session.options).unwrap();
+    let (px, rad) = largest_differences(&ours, found);
+    let ([own_px, own_mm], [px_rms, mm]) = (judge_session(session, &ours), judge_session(session, found));
     println!(
         "{what}: {px:.1e} px and {rad:.1e} rad apart; held out {px_rms:.4} px, {mm:.4} mm, ours {own_px:.4} px, {own_mm:.4} mm"
     );
@@ -176,7 +177,7 @@ fn tables_of_other_programs_are_the_same_session() {
         &found,
         "took the numbers of corners for the points of the board, as counted from 1: `1` is `corner0`",
     );
-    same(&session, "HALCON, from 1", &found, 0.0);
+    assert_same(&session, "HALCON, from 1", &found, 0.0);
     let columns = &found.understood[0].columns;
     let of = |name: &str| columns.iter().find(|it| it.name == name).and_then(|it| it.column.clone());
     assert_eq!((of("u"), of("v")), (Some("Column".to_owned()), Some("Row".to_owned())));
@@ -192,8 +193,8 @@ fn tables_of_other_programs_are_the_same_session() {
         for name in ["corner", "corner_id", "id", "index", "point", "marker"] {
             let row = |at: usize, it: &Corner| format!("{at:03}.png,{},{},{}", it.point, u(it), v(it));
             let found = read_as(&format!("filename,{name},{x},{y}"), &row, &session.options);
-            let ours = session.read(&as_texts(&session.ours()), &session.options).unwrap();
-            assert_eq!(apart(&ours, &found), (0.0, 0.0), "{x} {name}");
+            let ours = session.read(&as_texts(&session.own_files()), &session.options).unwrap();
+            assert_eq!(largest_differences(&ours, &found), (0.0, 0.0), "{x} {name}");
             says(&found, &format!("`{x}` for u, `{y}` for v, `{name}` for target, `filename` for image"));
         }
     }
@@ -213,8 +214,13 @@ fn tables_of_other_programs_are_the_same_session() {
             &found,
             "took the places of the corners for the board `board` of 20 points, 160.0 x 120.0 x 0.0 mm",
         );
-        same(&session, &format!("places on the board, {names}"), &found, 0.0);
-        same(&session, "the same beside a stated board", &read_as(&header, &row, &session.options), 0.0);
+        assert_same(&session, &format!("places on the board, {names}"), &found, 0.0);
+        assert_same(
+            &session,
+            "the same beside a stated board",
+            &read_as(&header, &row, &session.options),
+            0.0,
+        );
     }
 }
 
@@ -232,7 +238,7 @@ fn rows_with_joints_need_no_other_file() {
         });
         let found = session.read(&[("corners.csv", &corners)], &session.without_boards()).unwrap();
         says(&found, "ignored the columns `i");
-        same(&session, header, &found, 0.0);
+        assert_same(&session, header, &found, 0.0);
     }
 }
 
@@ -255,7 +261,7 @@ fn pictures_with_the_same_number_are_the_same() {
             &found,
             "took the pictures whose names end in the same number for the same, 20 of 20: `image-0.png` is",
         );
-        same(&session, &name(7), &found, 0.0);
+        assert_same(&session, &name(7), &found, 0.0);
     }
     // Numbers that two pictures share join none.
     let twice = corners.replace("image-3.png", "other-4.png");

@@ -3,7 +3,7 @@
 use poecal_import::{ReadOptions, board_of_file, parse, read_boards, read_cameras};
 use poecal_model::camera::{Corner, Distortion, Picture};
 
-use crate::foreign_corners::{Session, same, says};
+use crate::foreign_corners::{Session, assert_same, says};
 use poecal_testing::files::Folder;
 
 /// A message of robot_calibration in JSON.
@@ -65,11 +65,11 @@ fn messages_of_robot_calibration_are_the_same_session() {
         says(&found, "took the board `checkerboard` (20 points of the sensor arm)");
         says(&found, "ignored the joints head_pan");
         assert_eq!(found.data.pictures.cameras[0].name, "eye");
-        same(&session, name, &found, 0.0);
+        assert_same(&session, name, &found, 0.0);
     }
     let found = session.read(&[("lines.jsonl", &all(false).join("\n"))], &session.options).unwrap();
     says(&found, "took the stated board, by the order of its points, and not those of arm");
-    same(&session, "with --camera and --markers", &found, 0.0);
+    assert_same(&session, "with --camera and --markers", &found, 0.0);
 }
 
 /// The flow form of YAML with its outer keys on lines of their own.
@@ -154,7 +154,7 @@ fn mistakes_in_messages_are_named() {
         &["found 20 features of `eye`, expected the 16 points of the board"],
     );
     let stated = ReadOptions { boards: session.options.boards.clone(), ..none };
-    same(
+    assert_same(
         &session,
         "without the arm, with --markers",
         &session.read(&[("m.json", &alone.join("\n"))], &stated).unwrap(),

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_import::{ColumnMap, MeasurementFile, ReadOptions, read};
 use poecal_model::measurement::{Dataset, Quantity, Set};
-use poecal_model::robot::{Joint, Limits, Robot};
+use poecal_model::robot::{Joint, JointLimits, Robot};
 use poecal_numerics::named_unit::UnitSource;
 use poecal_testing::files::Folder;
 use poecal_testing::sessions::lifting_robot;
@@ -178,7 +178,7 @@ fn the_published_ur10_series_reads_as_its_copy_in_our_form() {
     };
     let joints = (1..=6).map(|i| {
         let joint = Joint::revolute(&format!("joint{i}"), Screw::revolute(&Vector3::z(), &Vector3::zeros()));
-        Joint { limits: Some(Limits { lower: -2.0 * PI, upper: 2.0 * PI }), ..joint }
+        Joint { limits: Some(JointLimits { lower: -2.0 * PI, upper: 2.0 * PI }), ..joint }
     });
     let robot =
         Robot::new("ur10", joints.collect(), Pose::from_translation(Vector3::new(1.2, 0.0, 0.0))).unwrap();

@@ -8,7 +8,7 @@ use poecal_import::{
     DecimalSign, FitWhere, MeasurementFile, ReadOptions, Separator, parse, read, read_joints,
 };
 use poecal_model::measurement::{Dataset, Quantity, Set};
-use poecal_model::robot::{Joint, Limits, Reading, Robot};
+use poecal_model::robot::{Joint, JointLimits, Reading, Robot};
 use poecal_numerics::named_unit::UnitSource;
 use poecal_testing::files::Folder;
 use poecal_testing::sessions::lifting_robot;
@@ -23,7 +23,7 @@ fn read_text(text: impl AsRef<[u8]>, options: &ReadOptions) -> MeasurementFile {
         .unwrap_or_else(|error| panic!("{}", folder.without_path(&error.to_string())))
 }
 
-fn plain(text: &str) -> MeasurementFile {
+fn read_plain(text: &str) -> MeasurementFile {
     read_text(text, &ReadOptions::default())
 }
 
@@ -33,7 +33,7 @@ fn pose(data: &Dataset, row: usize) -> Pose {
 
 #[test]
 fn units_stand_in_the_header_or_are_si() {
-    let file = plain(
+    let file = read_plain(
         "a[deg],lift[mm],b,x[mm],y [cm],z[µm],sigma_position[um],sigma_rotation[mrad]\n90,250,0.5,100,20,3e5,50,2\n",
     );
     assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5]);
@@ -51,7 +51,7 @@ fn units_stand_in_the_header_or_are_si() {
 
 #[test]
 fn units_stand_in_round_brackets_or_as_words() {
-    let file = plain(
+    let file = read_plain(
         "a (deg),lift (Millimetres),b [radians],x(in),y [inch],z (meters),set\n90,250,0.5,10,20,0.3,fit\n",
     );
     assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5]);
@@ -69,7 +69,7 @@ fn a_joint_whose_name_ends_like_a_unit_keeps_its_name() {
     let text = "axis_m,axis(1)[mm],x,y,z\n0.5,20,1,2,3\n";
     let file = parse(text, "points.csv", &robot, &ReadOptions::default()).unwrap();
     assert_eq!(file.data.readings(0), [0.5, 0.02]);
-    let near = plain("a,lift,b,x,y,z,sigma_position_mm\n0,0,0,1,2,3,0.1\n").warnings;
+    let near = read_plain("a,lift,b,x,y,z,sigma_position_mm\n0,0,0,1,2,3,0.1\n").warnings;
     assert!(near[0].ends_with("`sigma_position_mm` (did you mean `sigma_position[mm]`?)"), "{near:?}");
 }
 
@@ -88,7 +88,7 @@ fn lines_of_separator_and_units_are_read() {
             Some(2),
         ),
     ] {
-        let file = plain(text);
+        let file = read_plain(text);
         let understood = &file.understood[0];
         assert_eq!((understood.separator_line, understood.units_line), (separator_line, units_line));
         assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5f64.to_radians()]);
@@ -115,7 +115,7 @@ fn lost_beams_are_left_out_and_counted() {
                 0.4,0,0,0,0,0,,,,,fit\n\
                 0.5,0,0,0,0,0,0,0,1,0,fit\n\
                 0.6,0,0,0,0,1,,,,,fit\n";
-    let file = plain(text);
+    let file = read_plain(text);
     let first: Vec<f64> = (0..file.data.len()).map(|row| file.data.readings(row)[0]).collect();
     assert_eq!(first, [0.0, 0.5, 0.6]);
     let understood = &file.understood[0];
@@ -145,7 +145,7 @@ fn lost_beams_are_left_out_and_counted() {
 fn one_lost_beam_is_no_other_unit() {
     let text = "a[deg],lift[mm],b[deg],x[mm],y[mm],z[mm]\n\
                 0,0,0,91000,0,300\n30,0,0,90866,500,300\n60,0,0,90500,866,300\n0,0,0,0,0,0\n";
-    assert_eq!(plain(text).data.len(), 3);
+    assert_eq!(read_plain(text).data.len(), 3);
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn orientations_are_quaternions_rotation_vectors_or_angles() {
         format!("{start},roll,pitch,yaw\n0,0,0,1,2,3,0.4,-0.3,2.0\n"),
     ];
     for text in files {
-        let seen = pose(&plain(&text).data, 0);
+        let seen = pose(&read_plain(&text).data, 0);
         assert!((seen.rotation - r).norm() < ROUNDING, "{text}");
         assert_eq!(seen.translation, Vector3::new(1.0, 2.0, 3.0));
     }
@@ -176,7 +176,7 @@ fn orientations_are_quaternions_rotation_vectors_or_angles() {
 #[test]
 fn one_file_mixes_points_and_poses() {
     let file =
-        plain("a,lift,b,x,y,z,qx,qy,qz,qw,sigma_rotation\n0,0,0,1,2,3,,,,,\n0,0,0,1,2,3,0,0,0,1,0.01\n");
+        read_plain("a,lift,b,x,y,z,qx,qy,qz,qw,sigma_rotation\n0,0,0,1,2,3,,,,,\n0,0,0,1,2,3,0,0,0,1,0.01\n");
     let kinds: Vec<bool> =
         file.data.observations.iter().map(|row| row.measurement.sees_orientation()).collect();
     assert_eq!(kinds, [false, true]);
@@ -187,7 +187,7 @@ fn one_file_mixes_points_and_poses() {
 
 #[test]
 fn columns_come_in_any_order_with_ids_sets_and_targets() {
-    let file = plain(
+    let file = read_plain(
         "set,id,z,y,x,target,b,lift,a\nfit,r1,3,2,1,smr2,0.3,0.2,0.1\n,,3,2,1,smr1,0,0,0\nheld_out,r3,3,2,1,smr2,0,0,0\n",
     );
     assert_eq!(file.data.readings(0), [0.1, 0.2, 0.3]);
@@ -216,7 +216,7 @@ fn separators_and_decimal_signs_are_recognised() {
         ("a,lift,b,x,y,z\r0.5,0,-1.5,1,2,3.25\r", Separator::Comma, DecimalSign::Point),
     ];
     for (text, separator, sign) in files {
-        let file = plain(text);
+        let file = read_plain(text);
         assert_eq!(
             (file.understood[0].separator, file.understood[0].decimal_sign),
             (separator, sign),
@@ -229,7 +229,8 @@ fn separators_and_decimal_signs_are_recognised() {
 
 #[test]
 fn other_columns_are_listed_and_left_alone() {
-    let file = plain("a,lift,b,x,y,z,temperature[degC],sigma_postion,Target,\n0,0,0,1,2,3,warm,0.1,A,\n");
+    let file =
+        read_plain("a,lift,b,x,y,z,temperature[degC],sigma_postion,Target,\n0,0,0,1,2,3,warm,0.1,A,\n");
     assert_eq!(file.warnings.len(), 1);
     assert!(
         file.warnings[0].ends_with(
@@ -245,7 +246,7 @@ fn other_columns_are_listed_and_left_alone() {
 #[test]
 fn joints_beyond_their_limits_are_a_warning_with_rows() {
     let rows = "0,0.6,0,1,2,3\n".repeat(2) + "0,0,0,1,2,3\n" + &"0,-0.1,0,1,2,3\n".repeat(4);
-    let file = plain(&format!("a,lift,b,x,y,z\n{rows}"));
+    let file = read_plain(&format!("a,lift,b,x,y,z\n{rows}"));
     assert_eq!(file.warnings.len(), 1);
     assert!(
         file.warnings[0]
@@ -258,7 +259,7 @@ fn joints_beyond_their_limits_are_a_warning_with_rows() {
 #[test]
 fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
     let text = "a[deg],lift,b[deg],x,y,z\n350,0,350,1,2,3\n190,0,0,1,2,3\n-350,0,0,1,2,3\n20,0,0,1,2,3\n";
-    let file = plain(text);
+    let file = read_plain(text);
     let degrees = |row: usize| file.data.readings(row)[0].to_degrees();
     for (row, expected) in [-10.0, -170.0, 10.0, 20.0].into_iter().enumerate() {
         assert!((degrees(row) - expected).abs() < 1e-12, "{row}: {}", degrees(row));
@@ -281,7 +282,7 @@ fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
     let told = read(&[path], &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string();
     assert!(told.contains("up to 11.4 rad") && told.contains("most likely deg"), "{told}");
     let counted: String = (-3..=3).map(|k| format!("{},0,0,1,2,3\n", 1.9 * f64::from(k))).collect();
-    assert_eq!(plain(&of(&counted)).data.len(), 7);
+    assert_eq!(read_plain(&of(&counted)).data.len(), 7);
     // Joint readings alone, for predictions, are treated in the same manner.
     let path = folder.write("q.csv", "a[deg],lift,b\n350,0,0\n");
     let joints = read_joints(&path, &lifting_robot(), &ReadOptions::default()).unwrap();
@@ -291,14 +292,14 @@ fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
 #[test]
 fn a_few_corrupt_rows_are_no_other_unit() {
     let good: String = (0..60).map(|i| format!("0.{},0.1,0,0.5,0.{},1\n", i % 10, i % 7)).collect();
-    let file = plain(&format!("a,lift,b,x,y,z\n{good}90,0.1,0,900,0,0\n"));
+    let file = read_plain(&format!("a,lift,b,x,y,z\n{good}90,0.1,0,900,0,0\n"));
     assert_eq!(file.data.len(), 61);
     assert_eq!(file.warnings.len(), 1);
 }
 
 #[test]
 fn turns_that_are_stated_in_radians_are_believed_without_limits() {
-    let file = plain("a,lift,b[rad],x,y,z\n0,0,120,1,2,3\n0,0,-40,1,2,3\n");
+    let file = read_plain("a,lift,b[rad],x,y,z\n0,0,120,1,2,3\n0,0,-40,1,2,3\n");
     assert_eq!(file.data.readings(0)[2], 120.0);
     assert!(file.warnings.is_empty());
 }
@@ -317,7 +318,7 @@ fn a_mimic_joint_is_read_from_its_leader() {
     let folder = Folder::new();
     let mut robot = lifting_robot();
     robot.joints[1].reading = Reading { name: "column".to_owned(), multiplier: 0.5, offset: -0.1 };
-    robot.joints[1].limits = Some(Limits { lower: -0.1, upper: 0.3 });
+    robot.joints[1].limits = Some(JointLimits { lower: -0.1, upper: 0.3 });
     let path = folder.write("points.csv", "a,column[mm],b,x,y,z\n0,800,0,1,2,3\n0,900,0,1,2,3\n");
     let file = read(&[path], &robot, &ReadOptions::default()).unwrap();
     assert_eq!(file.data.readings(0), [0.0, 0.8, 0.0]);
@@ -381,7 +382,7 @@ fn single_column_joint_tables_are_read() {
 #[test]
 fn anchors_name_where_distances_are_measured_from() {
     let head = "a[deg],lift[mm],b,x[mm],y[mm],z[mm],instrument,anchor,distance[mm]\n";
-    let file = plain(&format!(
+    let file = read_plain(&format!(
         "{head}10,250,0.5,100,20,3,tracker,,\n20,250,0.5,,,,,wall,800\n30,250,0.5,,,,,door,900\n40,250,0.5,,,,,wall,810\n"
     ));
     let stations: Vec<_> = file.data.observations.iter().map(|it| it.station).collect();
@@ -393,9 +394,9 @@ fn anchors_name_where_distances_are_measured_from() {
     assert_eq!(columns[columns.len() - 2..], ["instrument", "anchor"]);
 
     // There is no column of the instrument, and then both have the same name.
-    let file = plain("a,lift,b,anchor,distance\n0,0.1,0,wall,0.8\n0.1,0.1,0,door,0.9\n");
+    let file = read_plain("a,lift,b,anchor,distance\n0,0.1,0,wall,0.8\n0.1,0.1,0,door,0.9\n");
     assert_eq!(file.data.stations.len(), 2);
-    assert_eq!(plain(&format!("{head}20,250,0.5,,,,wall,wall,800\n")).data.stations.len(), 1);
+    assert_eq!(read_plain(&format!("{head}20,250,0.5,,,,wall,wall,800\n")).data.stations.len(), 1);
 
     let refused = |rows: &str| {
         let folder = Folder::new();

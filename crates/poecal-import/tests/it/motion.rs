@@ -9,7 +9,7 @@ use poecal_calibrate::calibrate;
 use poecal_fit::parameters::Parameter;
 use poecal_fit::state::ClockTerm;
 use poecal_import::{Join, ReadOptions, read};
-use poecal_model::measurement::Kind;
+use poecal_model::measurement::SessionKind;
 use poecal_model::robot::Robot;
 use poecal_model::simulate::{Configurations, Simulation, elbow, random};
 use rand_chacha::ChaCha8Rng;
@@ -43,13 +43,13 @@ impl Moves {
             };
             let length: f64 =
                 (0..20).map(|k| (tip(f64::from(k + 1) / 20.0) - tip(f64::from(k) / 20.0)).norm()).sum();
-            let speed = 0.3 + 0.7 * random::uniform(generator);
+            let speed = 0.3 + 0.7 * random::uniform_number(generator);
             // The fastest part of a move is 15/8 of its mean.
             let lasts = (1.9 * length / speed).max(0.6);
             moves.begins_s.push(time);
             moves.lasts_s.push(lasts);
             moves.places.push(next);
-            time += lasts + if stops { 0.2 + 0.8 * random::uniform(generator) } else { 0.0 };
+            time += lasts + if stops { 0.2 + 0.8 * random::uniform_number(generator) } else { 0.0 };
         }
         moves
     }
@@ -71,7 +71,7 @@ impl Moves {
         self.places.push(first);
     }
 
-    fn at(&self, time_s: f64) -> Vec<f64> {
+    fn configuration_at(&self, time_s: f64) -> Vec<f64> {
         let at = self.begins_s.partition_point(|it| *it <= time_s).saturating_sub(1);
         let s = ((time_s - self.begins_s[at]) / self.lasts_s[at]).clamp(0.0, 1.0);
         let share = s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
@@ -117,7 +117,8 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
         device_anywhere: true,
         ..Simulation::default()
     };
-    let made = simulation.run(&elbow(), if of.is_posed { Kind::POSE } else { Kind::POINT }).unwrap();
+    let made =
+        simulation.run(&elbow(), if of.is_posed { SessionKind::POSE } else { SessionKind::POINT }).unwrap();
     let mut moves = Moves::new(&made.actual, of.span_s, of.stops, &mut generator);
     if let Some(count) = of.repeats {
         moves.repeat(count, of.span_s);
@@ -131,7 +132,7 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     for step in 0..(of.span_s * of.joint_rate) as u32 {
         let time = f64::from(step) / of.joint_rate;
         let readings: Vec<String> = moves
-            .at(time)
+            .configuration_at(time)
             .iter()
             .map(|it| format!("{:.6}", it + 2e-6 * random::normal(&mut generator)))
             .collect();
@@ -141,13 +142,13 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     let middle = 0.5 * of.span_s;
     for step in 0..(of.span_s * of.rate) as u32 {
         let time = f64::from(step) / of.rate;
-        let pose = tip(&other.as_ref().unwrap_or(&moves).at(time));
+        let pose = tip(&other.as_ref().unwrap_or(&moves).configuration_at(time));
         let noise = |generator: &mut ChaCha8Rng, size: f64| random::normal_vector(generator) * size;
         let pose = Pose::new(
             pose.rotation * rotation::exp(&noise(&mut generator, 1e-4)),
             pose.translation + noise(&mut generator, 5e-5),
         );
-        let late = -of.late_s * (1.0 - random::uniform(&mut generator)).ln();
+        let late = -of.late_s * (1.0 - random::uniform_number(&mut generator)).ln();
         let stamp = 100.0 + time + of.lag_s + of.drift * (time - middle) + late;
         write!(
             seen,
@@ -185,7 +186,7 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     let target = calibration.targets[0].tip_from_target;
     for _ in 0..200 {
         // The robot's configuration.
-        let readings = moves.at(of.span_s * random::uniform(&mut generator));
+        let readings = moves.configuration_at(of.span_s * random::uniform_number(&mut generator));
         let of = |robot: &Robot| robot.forward_kinematics(&robot.joint_values(&readings));
         let predicted = calibration.base_from_device.inverse() * of(&calibration.robot) * target;
         squares += (predicted.translation - tip(&readings).translation).norm_squared();
@@ -199,15 +200,15 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     })
 }
 
-fn recorded(generator: &mut ChaCha8Rng) -> Recorded {
+fn draw_recording(generator: &mut ChaCha8Rng) -> Recorded {
     Recorded {
-        span_s: 60.0 + 120.0 * random::uniform(generator),
+        span_s: 60.0 + 120.0 * random::uniform_number(generator),
         joint_rate: [100.0, 250.0][(generator.next_u64() % 2) as usize],
         rate: [100.0, 250.0, 10.0][(generator.next_u64() % 3) as usize],
         is_posed: generator.next_u64().is_multiple_of(2),
         stops: generator.next_u64().is_multiple_of(2),
-        lag_s: 60.0 * random::uniform(generator) - 30.0,
-        drift: 1e-4 * random::uniform(generator) - 5e-5,
+        lag_s: 60.0 * random::uniform_number(generator) - 30.0,
+        drift: 1e-4 * random::uniform_number(generator) - 5e-5,
         late_s: 0.0,
         repeats: None,
         is_other: false,
@@ -222,7 +223,7 @@ fn lag_and_drift_of_recordings_in_motion_are_found() {
     let mut ratios = Vec::new();
     for seed in 0..all as u64 {
         let mut generator = ChaCha8Rng::seed_from_u64(1000 + seed);
-        let of = recorded(&mut generator);
+        let of = draw_recording(&mut generator);
         let found = match session(seed, &of) {
             Ok(found) => found,
             Err(error) => {
@@ -269,7 +270,7 @@ fn stamps_that_are_late_irregularly_are_part_of_the_lag_by_their_mean() {
     let (mut near, mut honest) = (0, 0);
     for seed in 0..all as u64 {
         let mut generator = ChaCha8Rng::seed_from_u64(3000 + seed);
-        let of = Recorded { late_s: LATE_S, ..recorded(&mut generator) };
+        let of = Recorded { late_s: LATE_S, ..draw_recording(&mut generator) };
         let found = session(seed, &of).unwrap();
         let lag = found.lag_s - of.lag_s - LATE_S;
         // With few rows the mean itself is uncertain: three of its standard deviations are added.
@@ -294,7 +295,7 @@ fn recordings_in_motion_of_different_sessions_are_refused_however_short() {
     for seed in 0..8 {
         let mut generator = ChaCha8Rng::seed_from_u64(7000 + seed);
         let span_s = [6.0, 12.0, 40.0][seed as usize % 3];
-        let of = Recorded { span_s, is_other: true, lag_s: 0.0, ..recorded(&mut generator) };
+        let of = Recorded { span_s, is_other: true, lag_s: 0.0, ..draw_recording(&mut generator) };
         let error = session(seed, &of).err().unwrap_or_default();
         println!("{span_s} s: {error}");
         assert!(error.contains("at no lag") || error.contains("no lag of the clocks"), "{seed}: {error}");
@@ -311,7 +312,7 @@ fn a_program_in_motion_that_repeats_itself_has_no_wrong_lag() {
         let of = Recorded {
             repeats: Some(4 + (generator.next_u64() % 4) as usize),
             span_s: 60.0,
-            ..recorded(&mut generator)
+            ..draw_recording(&mut generator)
         };
         match session(seed, &of) {
             Ok(found) => {

@@ -221,13 +221,13 @@ fn poses() -> Vec<(Pose, Pose)> {
     (0..5_u8).map(|k| (pose(f64::from(k)), pose(f64::from(k) + 0.5))).collect()
 }
 
-fn sixteen(pose: &Pose) -> Vec<f64> {
+fn sixteen_numbers(pose: &Pose) -> Vec<f64> {
     let matrix = pose.rotation.insert_column(3, 0.0);
     let row = |at: usize| [matrix[(at, 0)], matrix[(at, 1)], matrix[(at, 2)], pose.translation[at]];
     [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]].concat()
 }
 
-fn listed(numbers: &[f64]) -> String {
+fn list_numbers(numbers: &[f64]) -> String {
     numbers.iter().map(|it| format!("{it:?}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -274,8 +274,8 @@ fn samples_of_other_programs_are_the_same_poses() {
         of(&|arm, seen| {
             format!(
                 "- effector_wrt_world:\n{}  object_wrt_sensor:\n{}",
-                item(&sixteen(arm)),
-                item(&sixteen(seen))
+                item(&sixteen_numbers(arm)),
+                item(&sixteen_numbers(seen))
             )
         }),
     ));
@@ -285,7 +285,8 @@ fn samples_of_other_programs_are_the_same_poses() {
             + &of(&|arm, seen| format!("- robot:\n{}  tracking:\n{}", transform(arm), transform(seen))),
     ));
     let json = |pose: &Pose| {
-        let rows: Vec<String> = sixteen(pose).chunks(4).map(|row| format!("[{}]", listed(row))).collect();
+        let rows: Vec<String> =
+            sixteen_numbers(pose).chunks(4).map(|row| format!("[{}]", list_numbers(row))).collect();
         format!("[{}]", rows.join(","))
     };
     let matrices = |of: &dyn Fn(&(Pose, Pose)) -> String| all.iter().map(of).collect::<Vec<_>>().join(",\n");
@@ -306,22 +307,23 @@ fn samples_of_other_programs_are_the_same_poses() {
             .collect::<Vec<f64>>()
     };
     let seen = "rvec_x,rvec_y,rvec_z,tvec_x,tvec_y,tvec_z";
-    let by_columns =
-        |pose: &Pose| -> Vec<f64> { (0..16).map(|at| sixteen(pose)[4 * (at % 4) + at / 4]).collect() };
+    let by_columns = |pose: &Pose| -> Vec<f64> {
+        (0..16).map(|at| sixteen_numbers(pose)[4 * (at % 4) + at / 4]).collect()
+    };
     for (name, stem, is_by_columns) in
         [("rows.csv", "T#", false), ("franka.csv", "O_T_EE[#]", true), ("columns.csv", "pose_#", true)]
     {
-        let numbers = |pose: &Pose| if is_by_columns { by_columns(pose) } else { sixteen(pose) };
+        let numbers = |pose: &Pose| if is_by_columns { by_columns(pose) } else { sixteen_numbers(pose) };
         texts.push((
             name,
             format!("{},{seen}\n", names(stem))
-                + &of(&|arm, seen| format!("{}\n", listed(&[numbers(arm), rvec(seen)].concat()))),
+                + &of(&|arm, seen| format!("{}\n", list_numbers(&[numbers(arm), rvec(seen)].concat()))),
         ));
     }
     // The name is easy_handeye2's, and libfranka's frames of the tool are beside the pose.
     texts.push(("arm.samples", texts[1].1.clone()));
-    let numbers = |pose: &Pose| listed(&by_columns(pose));
-    let tool = listed(&sixteen(&Pose::from_xyz_rpy([0.0, 0.0, 0.1], [0.0, 0.0, -0.8])));
+    let numbers = |pose: &Pose| list_numbers(&by_columns(pose));
+    let tool = list_numbers(&sixteen_numbers(&Pose::from_xyz_rpy([0.0, 0.0, 0.1], [0.0, 0.0, -0.8])));
     texts.push((
         "states.json",
         format!(
@@ -366,30 +368,31 @@ fn a_pose_in_each_file_of_a_folder() {
         visp.write(&format!("pose_rPe_{at}.yaml"), vector(arm));
         visp.write(&format!("pose_cPo_{at}.yaml"), vector(target));
         let mut text = "__version__:\n  serializer: 1\n  data: 1\nFloatMatrix:\n  Data: [\n".to_owned();
-        for (row, numbers) in sixteen(arm).chunks(4).enumerate() {
+        for (row, numbers) in sixteen_numbers(arm).chunks(4).enumerate() {
             let mm: Vec<f64> = numbers
                 .iter()
                 .enumerate()
                 .map(|(at, it)| if at == 3 && row < 3 { 1e3 * it } else { *it })
                 .collect();
-            writeln!(text, "    [{}],", listed(&mm)).unwrap();
+            writeln!(text, "    [{}],", list_numbers(&mm)).unwrap();
         }
         zivid.write(&format!("pos{at:02}.yaml"), text + "  ]\n");
         zivid.write(&format!("img{at:02}.zdf"), "not read");
-        let rows: String = sixteen(target).chunks(4).map(|row| listed(row).replace(',', "") + "\n").collect();
+        let rows: String =
+            sixteen_numbers(target).chunks(4).map(|row| list_numbers(row).replace(',', "") + "\n").collect();
         seen.write(&format!("target_{at}.txt"), rows);
     }
-    are_poses("visp", &read(&[visp.here().to_owned()]).unwrap());
-    are_poses("zivid", &read(&[zivid.here().to_owned(), seen.here().to_owned()]).unwrap());
+    are_poses("visp", &read(&[visp.root_path().to_owned()]).unwrap());
+    are_poses("zivid", &read(&[zivid.root_path().to_owned(), seen.root_path().to_owned()]).unwrap());
     visp.write("pose_rPe_9.yaml", "rows: 6\ncols: 1\ndata: [0, 0, 0, 0, 0, 0]\n");
-    let error = read(&[visp.here().to_owned()]).unwrap_err();
+    let error = read(&[visp.root_path().to_owned()]).unwrap_err();
     assert!(
         error
             .contains("found 6 poses of the arm, 5 of the target and 0 of which nothing says whose they are"),
         "{error}"
     );
     seen.write("target_9.txt", "1 2 3\n");
-    let error = read(&[zivid.here().to_owned(), seen.here().to_owned()]).unwrap_err();
+    let error = read(&[zivid.root_path().to_owned(), seen.root_path().to_owned()]).unwrap_err();
     assert!(
         error.contains("target_9.txt: found 0 poses, expected one in each file of the folder"),
         "{error}"

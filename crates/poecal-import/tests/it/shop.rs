@@ -1,30 +1,30 @@
 //! All kinds of measurements: recovery without noise, ranks in closed form, efficiency with noise, mixtures, known lengths, anchors that are held
 //! out, and files (theory.md §4, §7).
 
-use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, ModelAccuracy, Robust, calibrate};
+use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, ModelAccuracy, RobustLoss, calibrate};
 use poecal_fit::analysis::Cause;
-use poecal_fit::state::{Packed, Session};
+use poecal_fit::state::{PackedValues, Session};
 use poecal_import::{ReadOptions, parse};
 use poecal_model::measurement::{Dataset, KnownLength, Noise, Quantity, Set};
 use poecal_model::robot::{Joint, Robot, Tolerance};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_axis};
-use poecal_testing::largest::larger;
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, random_chain, seven_axis};
+use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 
 /// Kinds without a device frame. The first number is the rank that they add to 4 for each revolute joint and 2 for each prismatic one. The second
 /// one is the number of undetermined unknowns: the size of the robot if nothing has a length.
-const KINDS: [(Kind, i32, usize); 10] = [
-    (Kind::DISTANCE, 6, 0),
-    (Kind::CHANGE, 9, 0),
-    (Kind::SPHERE, 0, 1),
-    (Kind::SOCKET, 2, 1),
-    (Kind::PLANE, 5, 1),
-    (Kind::HEIGHT, 6, 0),
-    (Kind::FLUSH, 4, 1),
-    (Kind::BALL_BAR, -3, 0),
-    (Kind::RELATIVE, 0, 0),
-    (Kind::COMPONENT, 2, 0),
+const KINDS: [(SessionKind, i32, usize); 10] = [
+    (SessionKind::DISTANCE, 6, 0),
+    (SessionKind::CHANGE, 9, 0),
+    (SessionKind::SPHERE, 0, 1),
+    (SessionKind::SOCKET, 2, 1),
+    (SessionKind::PLANE, 5, 1),
+    (SessionKind::HEIGHT, 6, 0),
+    (SessionKind::FLUSH, 4, 1),
+    (SessionKind::BALL_BAR, -3, 0),
+    (SessionKind::RELATIVE, 0, 0),
+    (SessionKind::COMPONENT, 2, 0),
 ];
 
 fn g(robot: &Robot) -> usize {
@@ -32,7 +32,7 @@ fn g(robot: &Robot) -> usize {
     robot.joints.iter().map(unknowns).sum()
 }
 
-fn exact(count: usize, seed: u64) -> Simulation {
+fn exact_simulation(count: usize, seed: u64) -> Simulation {
     let (error_rotation_rad, error_position_m) = (0.5f64.to_radians(), 1e-3);
     Simulation {
         noise_position_m: 0.0,
@@ -45,22 +45,22 @@ fn exact(count: usize, seed: u64) -> Simulation {
     }
 }
 
-fn fit(made: &Simulated) -> Calibration {
-    let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
+fn fit(made: &SimulationResult) -> Calibration {
+    let options = CalibrationOptions { robust: RobustLoss::Off, ..geometry() };
     calibrate(&made.nominal, &made.data, &options).unwrap()
 }
 
 /// Largest error of all lengths and angles of held-out rows, millimetres and degrees.
-fn worst(found: &Calibration) -> f64 {
+fn largest_error(found: &Calibration) -> f64 {
     let held_out = found.accuracy.held_out.as_ref().unwrap();
-    held_out.calibrated.iter().map(|(_, it)| it.max).fold(0.0, larger)
+    held_out.calibrated.iter().map(|(_, it)| it.max).fold(0.0, larger_or_nan)
 }
 
 #[test]
 fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
     for robot in [random_chain(6, 5), seven_axis(), elbow()] {
         for (kind, more, lacks) in KINDS {
-            let made = exact(150, 1).run(&robot, kind).unwrap();
+            let made = exact_simulation(150, 1).run(&robot, kind).unwrap();
             let found = fit(&made);
             // A prismatic joint has a length.
             let slides = robot.joints.iter().any(|joint| joint.screw.is_prismatic());
@@ -73,10 +73,16 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
                 kind.word(),
                 identified.rank,
                 identified.parameters,
-                worst(&found)
+                largest_error(&found)
             );
             // 1e-9 m, and the same number of degrees.
-            assert!(worst(&found) < 1e-6, "{} {}: {:e}", robot.name, kind.word(), worst(&found));
+            assert!(
+                largest_error(&found) < 1e-6,
+                "{} {}: {:e}",
+                robot.name,
+                kind.word(),
+                largest_error(&found)
+            );
             assert_eq!(
                 (identified.rank, identified.parameters),
                 (rank, rank + lacks),
@@ -92,9 +98,9 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
 #[test]
 fn directions_tell_directions_alone() {
     for robot in [elbow(), seven_axis()] {
-        let made = exact(100, 1).run(&robot, Kind::DIRECTION).unwrap();
+        let made = exact_simulation(100, 1).run(&robot, SessionKind::DIRECTION).unwrap();
         let found = fit(&made);
-        assert!(worst(&found) < 1e-9, "{:e}", worst(&found));
+        assert!(largest_error(&found) < 1e-9, "{:e}", largest_error(&found));
         assert_eq!(found.identifiability.rank, 2 * robot.joints.len() + 2);
     }
 }
@@ -102,7 +108,7 @@ fn directions_tell_directions_alone() {
 /// A known distance of two sockets determines the size.
 #[test]
 fn one_known_length_gives_the_scale() {
-    let mut made = exact(150, 2).run(&elbow(), Kind::SOCKET).unwrap();
+    let mut made = exact_simulation(150, 2).run(&elbow(), SessionKind::SOCKET).unwrap();
     let without = fit(&made);
     println!("{:?}", without.identifiability.unidentifiable);
     assert_eq!(without.identifiability.unidentifiable[0].cause, Cause::NoLength);
@@ -112,7 +118,7 @@ fn one_known_length_gives_the_scale() {
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (27, 27));
     assert!(found.identifiability.unidentifiable.is_empty());
     // The size is right, and so are predictions anywhere.
-    let other = exact(60, 2).held_out(&made, Kind::DISTANCE, 60).unwrap();
+    let other = exact_simulation(60, 2).held_out(&made, SessionKind::DISTANCE, 60).unwrap();
     assert_eq!(other.len(), 60);
     let apart = |estimate: &poecal_fit::state::Estimate| {
         let [a, b] = [0, 1].map(|station| estimate.device(station).inverse().translation);
@@ -128,24 +134,24 @@ fn one_known_length_gives_the_scale() {
 #[test]
 fn kinds_are_mixed() {
     let robot = elbow();
-    let simulation = exact(60, 3);
-    let first = simulation.run(&robot, Kind::DISTANCE).unwrap();
+    let simulation = exact_simulation(60, 3);
+    let first = simulation.run(&robot, SessionKind::DISTANCE).unwrap();
     let mut data = first.data.clone();
-    for kind in [Kind::SOCKET, Kind::PLANE, Kind::SPHERE, Kind::CHANGE] {
+    for kind in [SessionKind::SOCKET, SessionKind::PLANE, SessionKind::SPHERE, SessionKind::CHANGE] {
         let mut more = simulation.held_out(&first, kind, 40).unwrap();
         // The zero of changes is one of an instrument.
         more.stations.iter_mut().flatten().for_each(|name| *name = format!("{} {name}", kind.word()));
         data.extend(&more).unwrap();
     }
-    let made = Simulated { data, ..first };
+    let made = SimulationResult { data, ..first };
     let found = fit(&made);
     println!(
         "rank {} of {}, {:e} mm",
         found.identifiability.rank,
         found.identifiability.parameters,
-        worst(&found)
+        largest_error(&found)
     );
-    assert!(worst(&found) < 1e-6);
+    assert!(largest_error(&found) < 1e-6);
     assert_eq!(found.identifiability.rank, found.identifiability.parameters);
 }
 
@@ -158,11 +164,11 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
     for (kind, ..) in KINDS {
         let (mut squares, mut expected) = (0.0, 0.0);
         for seed in trials.seeds() {
-            let without = exact(110, seed);
+            let without = exact_simulation(110, seed);
             let noisy = Simulation { noise_position_m: 5e-5, noise_rotation_rad: 1e-4, ..without };
             let mut made = noisy.run(&elbow(), kind).unwrap();
             let options = CalibrationOptions {
-                robust: Robust::Off,
+                robust: RobustLoss::Off,
                 held_out: Some(0.0),
                 // Without a length, noise would shrink the robot.
                 tolerance: kind.is_touched().then(Tolerance::default),
@@ -179,7 +185,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
                 made.data = without.run(&elbow(), kind).unwrap().data;
                 expected += unknowns as f64;
             }
-            let packed = Packed::from_dataset(&made.nominal, &made.data);
+            let packed = PackedValues::from_dataset(&made.nominal, &made.data);
             let session = Session::new(&made.nominal, &made.data, &packed, true);
             for error in session.errors(&made.data.all_rows(), &found.models.calibrated) {
                 let whitened = error.numbers().map(|(channel, e)| (e / sigma[channel.quantity]).powi(2));
@@ -189,7 +195,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
         println!("{:16} {:.4}", kind.word(), squares / expected);
         // 60 sessions of some 25 unknowns, each of variance 2: a standard deviation of 3.7 %; of some 100 residuals less.
         let (most, sigma) = if kind.is_touched() { (0.05, 0.16) } else { (0.11, 0.28) };
-        let most = most + trials.more(sigma);
+        let most = most + trials.tolerance_factor(sigma);
         assert!((squares / expected - 1.0).abs() < most, "{}: {}", kind.word(), squares / expected);
     }
 }
@@ -198,8 +204,10 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
 #[test]
 fn a_tolerance_is_needed_where_nothing_has_a_length() {
     let options = CalibrationOptions { tolerance: None, ..geometry() };
-    for (kind, is_refused) in [(Kind::SOCKET, true), (Kind::PLANE, true), (Kind::DISTANCE, false)] {
-        let made = exact(80, 1).run(&elbow(), kind).unwrap();
+    for (kind, is_refused) in
+        [(SessionKind::SOCKET, true), (SessionKind::PLANE, true), (SessionKind::DISTANCE, false)]
+    {
+        let made = exact_simulation(80, 1).run(&elbow(), kind).unwrap();
         let found = calibrate(&made.nominal, &made.data, &options);
         assert_eq!(found.is_err(), is_refused, "{}", kind.word());
         if let Err(error) = found {
@@ -214,13 +222,13 @@ fn a_tolerance_is_needed_where_nothing_has_a_length() {
 /// Anchors that only held-out rows name are estimated from these rows; the figure is the error that the constraint leaves.
 #[test]
 fn held_out_sockets_are_judged_by_their_own_mean() {
-    let made = exact(160, 4).run(&elbow(), Kind::SOCKET).unwrap();
+    let made = exact_simulation(160, 4).run(&elbow(), SessionKind::SOCKET).unwrap();
     for fitted in 0..2 {
         let mut data = made.data.clone();
         for row in &mut data.observations {
             row.set = Some(if row.station == fitted { Set::Fit } else { Set::HeldOut });
         }
-        let found = fit(&Simulated { data, ..made.clone() });
+        let found = fit(&SimulationResult { data, ..made.clone() });
         let held_out = found.accuracy.held_out.as_ref().unwrap();
         let residual = held_out.calibrated.residual_mm.unwrap();
         println!("{:e} mm, before {:e} mm", residual.max, held_out.registered.residual_mm.unwrap().max);
@@ -240,7 +248,7 @@ fn held_out_sockets_are_judged_by_their_own_mean() {
 fn sizes_are_chosen_where_other_sockets_are_held_out() {
     let Ok(Corrections::Sizes(terms)) = "sag=2e-3,tilt=1e-3".parse() else { panic!("no sizes") };
     let made = Simulation { terms, count: 160, seed: 4, ..Simulation::default() };
-    let mut made = made.run(&elbow(), Kind::SOCKET).unwrap();
+    let mut made = made.run(&elbow(), SessionKind::SOCKET).unwrap();
     for row in &mut made.data.observations {
         row.set = Some(if row.station == 0 { Set::Fit } else { Set::HeldOut });
     }
@@ -256,7 +264,8 @@ fn sizes_are_chosen_where_other_sockets_are_held_out() {
 /// Corrections are fitted for these kinds too.
 #[test]
 fn corrections_are_fitted_where_there_is_no_device() {
-    let made = Simulation { count: 200, ..Simulation::default() }.run(&elbow(), Kind::DISTANCE).unwrap();
+    let made =
+        Simulation { count: 200, ..Simulation::default() }.run(&elbow(), SessionKind::DISTANCE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Auto, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     assert!(found.correction.is_some());
@@ -277,10 +286,10 @@ fn a_single_unnamed_socket_is_a_fixed_point() {
 #[test]
 fn residuals_of_a_sphere_have_their_sign() {
     let simulation = Simulation { count: 150, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::SPHERE).unwrap();
-    let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
+    let made = simulation.run(&elbow(), SessionKind::SPHERE).unwrap();
+    let options = CalibrationOptions { robust: RobustLoss::Off, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
-    let packed = Packed::from_dataset(&made.nominal, &made.data);
+    let packed = PackedValues::from_dataset(&made.nominal, &made.data);
     let session = Session::new(&made.nominal, &made.data, &packed, true);
     let errors = session.errors(&found.fit_rows, &found.models.calibrated);
     let all: Vec<f64> = errors.iter().flat_map(|it| it.numbers().map(|(_, e)| e)).collect();

@@ -5,7 +5,7 @@ use std::fs;
 
 use poecal_arm::lie::{Pose, rotation};
 use poecal_import::{ReadOptions, read};
-use poecal_model::measurement::Kind;
+use poecal_model::measurement::SessionKind;
 use poecal_model::simulate::{Simulation, elbow};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
@@ -14,23 +14,23 @@ use poecal_testing::files::Folder;
 use poecal_testing::trials::trials;
 
 /// A number from 0 to 1.
-fn uniform(random: &mut ChaCha8Rng) -> f64 {
+fn uniform_number(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// An approximately standard normal number: the sum of twelve uniform ones.
 fn normal(random: &mut ChaCha8Rng) -> f64 {
-    (0..12).map(|_| uniform(random)).sum::<f64>() - 6.0
+    (0..12).map(|_| uniform_number(random)).sum::<f64>() - 6.0
 }
 
 /// Beginning and end of each static interval, seconds.
 fn stands(random: &mut ChaCha8Rng, count: usize) -> Vec<(f64, f64)> {
-    let mut time = 0.3 * uniform(random);
+    let mut time = 0.3 * uniform_number(random);
     (0..count)
         .map(|_| {
             let begin = time;
-            let end = begin + 0.5 + 0.8 * uniform(random);
-            time = end + 0.5 + 0.6 * uniform(random);
+            let end = begin + 0.5 + 0.8 * uniform_number(random);
+            time = end + 0.5 + 0.6 * uniform_number(random);
             (begin, end)
         })
         .collect()
@@ -75,10 +75,11 @@ fn session(seed: u64) -> Option<Joined> {
         device_anywhere: true,
         ..Simulation::default()
     };
-    let made = simulation.run(&elbow(), if is_posed { Kind::POSE } else { Kind::POINT }).unwrap();
+    let made =
+        simulation.run(&elbow(), if is_posed { SessionKind::POSE } else { SessionKind::POINT }).unwrap();
     let spans = stands(random, count);
     let (from, to) = (spans[0].0, spans[count - 1].1);
-    let lag_s = 60.0 * uniform(random) - 30.0;
+    let lag_s = 60.0 * uniform_number(random) - 30.0;
     let next = |at: usize| (at + 1).min(count - 1);
     let mut joints = format!("time,{}\n", made.data.reading_names().join(","));
     for step in 0.. {
@@ -94,7 +95,7 @@ fn session(seed: u64) -> Option<Joined> {
         writeln!(joints, "{:.4},{}", 5000.0 + time, readings.join(",")).unwrap();
     }
     let rate = [100.0, 50.0, 10.0][(random.next_u64() % 3) as usize];
-    let gap = from + (to - from - 1.0) * uniform(random);
+    let gap = from + (to - from - 1.0) * uniform_number(random);
     let mut seen = "time,x,y,z".to_owned() + if is_posed { ",qx,qy,qz,qw\n" } else { "\n" };
     for step in 0.. {
         let time = from + f64::from(step) / rate;
@@ -102,7 +103,7 @@ fn session(seed: u64) -> Option<Joined> {
             break;
         }
         // Single frames, and a whole second, are lost.
-        if uniform(random) < 0.02 || (gap..gap + 1.0).contains(&time) {
+        if uniform_number(random) < 0.02 || (gap..gap + 1.0).contains(&time) {
             continue;
         }
         let (at, share) = place(&spans, time);
@@ -190,7 +191,8 @@ fn stands_of_two_recordings_are_joined_rightly() {
 
 #[test]
 fn a_program_that_repeats_itself_is_refused_until_the_lag_is_stated() {
-    let made = Simulation { count: 8, seed: 3, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made =
+        Simulation { count: 8, seed: 3, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     // The same configurations occur three times, each for a second.
     let spans: Vec<(f64, f64)> = (0..24).map(|at| (2.0 * f64::from(at), 2.0 * f64::from(at) + 1.0)).collect();
     let (mut joints, mut seen) =

@@ -1,21 +1,21 @@
 //! Accuracy with noise, and convergence from distant starts.
 
 use super::super::{Basin, Claim, MeasurementKind};
-use super::{Evidence, said};
-use crate::{Formulation, Method, Residual};
+use super::{ClaimEvidence, make_claim};
+use crate::{Method, PaperFormulation, PaperResidual};
 use poecal_numerics::error::Result;
 
 /// Share of starts that must reach the truth, from errors up to this angle: twice the largest turn in Table II, which is 5 deg.
 const ROBUST_SHARE: f64 = 0.99;
 const ROBUST_DEG: f64 = 10.0;
 
-pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
+pub(super) fn normalisation(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
     let mut told = Vec::new();
     let (mut at_truth, mut worse) = (true, true);
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
-        let screw = evidence.noisy_fits(Formulation::Screw, seen, Residual::Tool)?;
-        let adjoint = evidence.noisy_fits(Formulation::Adjoint, seen, Residual::Tool)?;
-        at_truth &= evidence.run(Formulation::Screw, seen, false)?.converged;
+        let screw = evidence.noisy_fits(PaperFormulation::Screw, seen, PaperResidual::Tool)?;
+        let adjoint = evidence.noisy_fits(PaperFormulation::Adjoint, seen, PaperResidual::Tool)?;
+        at_truth &= evidence.run(PaperFormulation::Screw, seen, false)?.converged;
         worse &= screw.exceeds(adjoint);
         told.push(format!(
             "{} from {}, where the adjoint form has {}",
@@ -34,7 +34,7 @@ pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
     } else {
         "With noise, these trials do not show that it converges beside the least-squares optimum"
     };
-    Ok(said(
+    Ok(make_claim(
         "Normalising screws after each iteration is plausible but not rigorous.",
         "Section III.B: \"though practically plausible, is not mathematically rigorous\".",
         (
@@ -47,19 +47,19 @@ pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-pub(super) fn convergence(evidence: &Evidence<'_>) -> Result<Claim> {
+pub(super) fn convergence(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
     let words = |basins: &[&Basin]| {
         let share = |it: &&Basin| {
             format!("{:.1} % from {} deg and {} mm", 100.0 * it.share, it.error_deg, it.error_mm)
         };
         basins.iter().map(share).collect::<Vec<String>>().join(", ")
     };
-    let poses = evidence.basins(Formulation::Adjoint, MeasurementKind::Poses, Method::GaussNewton)?;
-    let points = evidence.basins(Formulation::Adjoint, MeasurementKind::Points, Method::GaussNewton)?;
+    let poses = evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Poses, Method::GaussNewton)?;
+    let points = evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Points, Method::GaussNewton)?;
     let damped =
-        evidence.basins(Formulation::Adjoint, MeasurementKind::Points, Method::LevenbergMarquardt)?;
+        evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Points, Method::LevenbergMarquardt)?;
     let mut near = poses.iter().chain(&points).filter(|it| it.error_deg <= ROBUST_DEG);
-    Ok(said(
+    Ok(make_claim(
         "Iterated least squares converges robustly.",
         "Section VI: \"the speed of convergence is impressive, due to the robustness of sequential linear least-square algorithm\".",
         (

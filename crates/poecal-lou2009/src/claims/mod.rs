@@ -1,13 +1,13 @@
 //! The statements of lou2009, and findings that it leaves out, compared with the runs.
 
 mod accuracy;
-mod left_out;
 mod offsets;
+mod omissions;
 mod simulations;
 
-use super::runs::Ended;
-use super::{Basin, Claim, Efficiency, MeasurementKind, Reproduction, Run, exact};
-use crate::{Formulation, Method, Residual};
+use super::runs::FinishedRun;
+use super::{Basin, Claim, Efficiency, ElbowRun, MeasurementKind, Reproduction, find_exact_run};
+use crate::{Method, PaperFormulation, PaperResidual};
 use poecal_fit::state::Estimate;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
@@ -17,21 +17,21 @@ const RECOVERED: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 
 /// Evidence that decides the claims.
-pub(super) struct Evidence<'a> {
-    pub(super) runs: &'a [Ended],
+pub(super) struct ClaimEvidence<'a> {
+    pub(super) runs: &'a [FinishedRun],
     pub(super) found: &'a Reproduction,
     pub(super) seed: u64,
 }
 
-impl Evidence<'_> {
+impl ClaimEvidence<'_> {
     /// A noise-free run.
-    fn run(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Result<&Run> {
+    fn run(&self, formulation: PaperFormulation, seen: MeasurementKind, offsets: bool) -> Result<&ElbowRun> {
         let run = self.found.exact_run(formulation, seen, offsets);
-        run.ok_or_else(|| missing("run", formulation, seen))
+        run.ok_or_else(|| missing_error("run", formulation, seen))
     }
 
     /// The noise-free runs from poses and from points.
-    fn both_runs(&self, formulation: Formulation, offsets: bool) -> Result<[&Run; 2]> {
+    fn both_runs(&self, formulation: PaperFormulation, offsets: bool) -> Result<[&ElbowRun; 2]> {
         Ok([
             self.run(formulation, MeasurementKind::Poses, offsets)?,
             self.run(formulation, MeasurementKind::Points, offsets)?,
@@ -40,34 +40,39 @@ impl Evidence<'_> {
 
     /// Final estimate of the noise-free run of the adjoint form from points.
     fn end_of_points(&self) -> Result<&Estimate> {
-        let ended = exact(self.runs, Formulation::Adjoint, MeasurementKind::Points, false);
+        let ended = find_exact_run(self.runs, PaperFormulation::Adjoint, MeasurementKind::Points, false);
         ended
             .map(|it| &it.estimate)
-            .ok_or_else(|| missing("run", Formulation::Adjoint, MeasurementKind::Points))
+            .ok_or_else(|| missing_error("run", PaperFormulation::Adjoint, MeasurementKind::Points))
     }
 
     /// The fits with noise by plain Gauss-Newton.
     fn noisy_fits(
         &self,
-        formulation: Formulation,
+        formulation: PaperFormulation,
         seen: MeasurementKind,
-        residual: Residual,
+        residual: PaperResidual,
     ) -> Result<&Efficiency> {
         let fits = self.found.noisy_fits(formulation, seen, residual);
-        fits.ok_or_else(|| missing("noisy fit", formulation, seen))
+        fits.ok_or_else(|| missing_error("noisy fit", formulation, seen))
     }
 
     /// The distant starts, the nearest first.
-    fn basins(&self, formulation: Formulation, seen: MeasurementKind, method: Method) -> Result<Vec<&Basin>> {
+    fn basins(
+        &self,
+        formulation: PaperFormulation,
+        seen: MeasurementKind,
+        method: Method,
+    ) -> Result<Vec<&Basin>> {
         let basins: Vec<&Basin> = self.found.basins(formulation, seen, method).collect();
         if basins.is_empty() {
-            return Err(missing("start from afar", formulation, seen));
+            return Err(missing_error("start from afar", formulation, seen));
         }
         Ok(basins)
     }
 }
 
-fn missing(what: &str, formulation: Formulation, seen: MeasurementKind) -> Error {
+fn missing_error(what: &str, formulation: PaperFormulation, seen: MeasurementKind) -> Error {
     ErrorKind::Problem.error(format!(
         "found no {what} of `{}` with {}, expected one to judge a claim by",
         formulation.word(),
@@ -76,7 +81,7 @@ fn missing(what: &str, formulation: Formulation, seen: MeasurementKind) -> Error
 }
 
 /// A statement of the paper.
-fn said(claim: &str, paper: &str, (criterion, holds): (String, bool), measured: String) -> Claim {
+fn make_claim(claim: &str, paper: &str, (criterion, holds): (String, bool), measured: String) -> Claim {
     Claim {
         claim: claim.to_owned(),
         paper: paper.to_owned(),
@@ -89,12 +94,12 @@ fn said(claim: &str, paper: &str, (criterion, holds): (String, bool), measured: 
 
 /// A finding that the paper leaves out.
 fn left_out(claim: &str, paper: &str, judged: (String, bool), measured: String) -> Claim {
-    Claim { said_by_paper: false, ..said(claim, paper, judged, measured) }
+    Claim { said_by_paper: false, ..make_claim(claim, paper, judged, measured) }
 }
 
 /// All claims, in the order of the paper; then the findings that it leaves out.
-pub(super) fn claims(evidence: &Evidence<'_>) -> Result<Vec<Claim>> {
-    let parts: [fn(&Evidence<'_>) -> Result<Claim>; 17] = [
+pub(super) fn claims(evidence: &ClaimEvidence<'_>) -> Result<Vec<Claim>> {
+    let parts: [fn(&ClaimEvidence<'_>) -> Result<Claim>; 17] = [
         offsets::original_without_offsets,
         offsets::original_parameters_with_offsets,
         offsets::original_prediction_with_offsets,
@@ -108,10 +113,10 @@ pub(super) fn claims(evidence: &Evidence<'_>) -> Result<Vec<Claim>> {
         simulations::twice_as_many,
         simulations::table,
         accuracy::convergence,
-        left_out::redundancy,
-        left_out::point_on_axis,
-        left_out::lever_arm,
-        left_out::rounding,
+        omissions::redundancy,
+        omissions::point_on_axis,
+        omissions::lever_arm,
+        omissions::rounding,
     ];
     parts.iter().map(|part| part(evidence)).collect()
 }
@@ -130,10 +135,10 @@ mod tests {
         let without_starts = Reproduction { basin: vec![], ..found.clone() };
         for (runs, found) in [(&runs[..0], &found), (&runs[..], &without_fits), (&runs[..], &without_starts)]
         {
-            let error = claims(&Evidence { runs, found, seed: 3 }).unwrap_err();
+            let error = claims(&ClaimEvidence { runs, found, seed: 3 }).unwrap_err();
             println!("{error}");
             assert_eq!(error.kind(), ErrorKind::Problem);
         }
-        assert_eq!(claims(&Evidence { runs: &runs, found: &found, seed: 3 }).unwrap(), found.claims);
+        assert_eq!(claims(&ClaimEvidence { runs: &runs, found: &found, seed: 3 }).unwrap(), found.claims);
     }
 }

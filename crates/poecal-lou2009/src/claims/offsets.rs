@@ -1,30 +1,30 @@
 //! Section III.A: joint offsets.
 
-use super::super::{Claim, MeasurementKind, Run, runs, tables};
-use super::{Evidence, RECOVERED, ROUNDING, said};
-use crate::Formulation;
+use super::super::{Claim, ElbowRun, MeasurementKind, runs, tables};
+use super::{ClaimEvidence, RECOVERED, ROUNDING, make_claim};
+use crate::PaperFormulation;
 use poecal_arm::lie::Pose;
-use poecal_fit::state::{Chain, Linkage};
+use poecal_fit::state::{Linkage, RowChain};
 use poecal_numerics::error::Result;
 
 /// Error of a joint offset from which it differs from the prescribed one, degrees.
 const MISSED_DEG: f64 = 0.5;
 
 /// True if all screws are recovered.
-fn screws_recovered(run: &Run) -> bool {
+fn screws_recovered(run: &ElbowRun) -> bool {
     run.screw_error_max_v_m < RECOVERED && run.screw_error_max_omega < RECOVERED
 }
 
-pub(super) fn original_without_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let [poses, points] = evidence.both_runs(Formulation::Screw, false)?;
-    let words = |run: &Run| {
+pub(super) fn original_without_offsets(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let [poses, points] = evidence.both_runs(PaperFormulation::Screw, false)?;
+    let words = |run: &ElbowRun| {
         format!(
             "{} iterations, screws within {:.1e} m in v and {:.1e} in ω, held-out error {:.1e} m",
             run.iterations, run.screw_error_max_v_m, run.screw_error_max_omega, run.held_out_rms_m
         )
     };
-    let works = |run: &Run| run.converged && screws_recovered(run);
-    Ok(said(
+    let works = |run: &ElbowRun| run.converged && screws_recovered(run);
+    Ok(make_claim(
         "The original formulation works where there are no joint offsets.",
         "Section III.A: \"it works well with joint offset-free assumption\".",
         (
@@ -41,10 +41,10 @@ pub(super) fn original_without_offsets(evidence: &Evidence<'_>) -> Result<Claim>
     ))
 }
 
-pub(super) fn original_parameters_with_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?;
+pub(super) fn original_parameters_with_offsets(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let run = evidence.run(PaperFormulation::ScrewOffsets, MeasurementKind::Poses, true)?;
     let offset = run.offset_error_max_deg.unwrap_or(f64::NAN);
-    Ok(said(
+    Ok(make_claim(
         "With joint offsets, the original formulation does not return the prescribed errors.",
         "Section I: \"the calibration result is not consistent with prescribed errors\".",
         (format!("Some offset is missed by more than {MISSED_DEG} deg."), offset > MISSED_DEG),
@@ -56,8 +56,8 @@ pub(super) fn original_parameters_with_offsets(evidence: &Evidence<'_>) -> Resul
     ))
 }
 
-pub(super) fn original_prediction_with_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?;
+pub(super) fn original_prediction_with_offsets(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let run = evidence.run(PaperFormulation::ScrewOffsets, MeasurementKind::Poses, true)?;
     let predicts = run.converged && run.held_out_rms_m < RECOVERED;
     let measured = if predicts {
         format!(
@@ -74,7 +74,7 @@ pub(super) fn original_prediction_with_offsets(evidence: &Evidence<'_>) -> Resul
             run.iterations, run.held_out_rms_m
         )
     };
-    Ok(said(
+    Ok(make_claim(
         "With joint offsets, the original calibration fails.",
         "Abstract: it \"always fails with the existence of joint offset errors\".",
         (
@@ -88,10 +88,10 @@ pub(super) fn original_prediction_with_offsets(evidence: &Evidence<'_>) -> Resul
 }
 
 /// Equations (11) to (15): the robot with offsets and its equivalent without.
-pub(super) fn equivalence(evidence: &Evidence<'_>) -> Result<Claim> {
+pub(super) fn equivalence(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
     let session = runs::session(true, MeasurementKind::Poses, evidence.seed);
     let (with, without) = (Linkage::new(&session.truth), Linkage::new(&session.truth.without_offsets()));
-    let (mut a, mut b) = (Chain::default(), Chain::default());
+    let (mut a, mut b) = (RowChain::default(), RowChain::default());
     let (mut position_m, mut rotation) = (0.0_f64, 0.0_f64);
     for row in 0..session.unseen.rows() {
         a.evaluate(&with, &session.unseen, row, 0);
@@ -100,7 +100,7 @@ pub(super) fn equivalence(evidence: &Evidence<'_>) -> Result<Claim> {
         position_m = position_m.max(difference.translation.amax());
         rotation = rotation.max((difference.rotation - Pose::identity().rotation).amax());
     }
-    Ok(said(
+    Ok(make_claim(
         "A robot with joint offsets equals one without whose screws and home pose are moved.",
         "Equations (11) to (15).",
         (
@@ -116,11 +116,11 @@ pub(super) fn equivalence(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-pub(super) fn proposition(evidence: &Evidence<'_>) -> Result<Claim> {
-    let [poses, points] = evidence.both_runs(Formulation::ScrewOffsets, true)?;
+pub(super) fn proposition(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let [poses, points] = evidence.both_runs(PaperFormulation::ScrewOffsets, true)?;
     let joints = tables::PRESCRIBED_OFFSETS_DEG.len();
-    let without = |run: &Run| run.parameters - run.rank;
-    Ok(said(
+    let without = |run: &ElbowRun| run.parameters - run.rank;
+    Ok(make_claim(
         "Joint offsets are not identifiable beside the screws.",
         "Proposition 1.",
         (
@@ -139,9 +139,9 @@ pub(super) fn proposition(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-pub(super) fn can_be_left_out(evidence: &Evidence<'_>) -> Result<Claim> {
-    let [poses, points] = evidence.both_runs(Formulation::Adjoint, true)?;
-    Ok(said(
+pub(super) fn can_be_left_out(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let [poses, points] = evidence.both_runs(PaperFormulation::Adjoint, true)?;
+    Ok(make_claim(
         "Joint offsets need not be considered at all.",
         "Section III.A: \"there is no need to consider joint offset errors at all!\"; Section VI: \"they can be ignored without any \
          danger\".",

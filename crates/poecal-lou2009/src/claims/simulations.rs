@@ -1,8 +1,8 @@
 //! Sections III.B and V: the adjoint error, and the two simulations.
 
-use super::super::{Claim, MeasurementKind, Run, tables};
-use super::{Evidence, RECOVERED, ROUNDING, said};
-use crate::Formulation;
+use super::super::{Claim, ElbowRun, MeasurementKind, tables};
+use super::{ClaimEvidence, RECOVERED, ROUNDING, make_claim};
+use crate::PaperFormulation;
 use poecal_numerics::error::Result;
 
 /// Iterations that the paper needs.
@@ -11,14 +11,14 @@ const PAPER_POINTS: usize = 10;
 /// Ratio of iterations from which on they nearly double. The paper's is 10/6.
 const NEARLY_TWICE: f64 = 1.5;
 
-pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
-    let largest = |free: bool, of: fn(&Run) -> f64| {
+pub(super) fn constraints(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let largest = |free: bool, of: fn(&ElbowRun) -> f64| {
         let runs = evidence.found.runs.iter().filter(|run| run.formulation.has_free_screws() == free);
         runs.map(of).fold(0.0, f64::max)
     };
     let pitch = |free| largest(free, |run| run.constraint_miss_pitch_m);
     let length = |free| largest(free, |run| run.constraint_miss_length);
-    Ok(said(
+    Ok(make_claim(
         "The adjoint error eliminates the screw constraints.",
         "Section III.B: \"still satisfies joint screw constraints of the same type\".",
         (
@@ -39,7 +39,7 @@ pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-fn iterations(run: &Run) -> String {
+fn iterations(run: &ElbowRun) -> String {
     let residual = run.trace.last().map_or(f64::NAN, |end| end.residual_rms_m);
     format!(
         "{} iterations from {} {} until the residual is rounding ({residual:.1e} m). The paper gives no rule to stop by.",
@@ -49,34 +49,34 @@ fn iterations(run: &Run) -> String {
     )
 }
 
-fn within(most: usize) -> String {
+fn describe_limit(most: usize) -> String {
     format!("The run reaches the truth, to rounding, in at most {most} iterations.")
 }
 
-pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = evidence.run(Formulation::Adjoint, MeasurementKind::Poses, false)?;
-    Ok(said(
+pub(super) fn poses_iterations(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let run = evidence.run(PaperFormulation::Adjoint, MeasurementKind::Poses, false)?;
+    Ok(make_claim(
         "From poses, the parameters are identified within 6 iterations.",
         "Section V: \"After 6 iterations, the kinematic parameters are successfully identified\".",
-        (within(PAPER_POSES), run.converged && run.iterations <= PAPER_POSES),
+        (describe_limit(PAPER_POSES), run.converged && run.iterations <= PAPER_POSES),
         iterations(run),
     ))
 }
 
-pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?;
-    Ok(said(
+pub(super) fn points_iterations(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let run = evidence.run(PaperFormulation::Adjoint, MeasurementKind::Points, false)?;
+    Ok(make_claim(
         "From points, the parameters are identified within 10 iterations.",
         "Section V: \"10 iterations are required to achieve the same accuracy\".",
-        (within(PAPER_POINTS), run.converged && run.iterations <= PAPER_POINTS),
+        (describe_limit(PAPER_POINTS), run.converged && run.iterations <= PAPER_POINTS),
         iterations(run),
     ))
 }
 
-pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
-    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
+pub(super) fn twice_as_many(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let [poses, points] = evidence.both_runs(PaperFormulation::Adjoint, false)?;
     let ratio = points.iterations as f64 / poses.iterations as f64;
-    Ok(said(
+    Ok(make_claim(
         "Points take nearly twice as many iterations as poses.",
         "Section V: \"The number of iteration nearly doubles for the position information case\".",
         (format!("At least {NEARLY_TWICE} times as many, to the same end."), ratio >= NEARLY_TWICE),
@@ -84,12 +84,12 @@ pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
-    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
-    let prescribed = tables::prescribed().home.translation;
+pub(super) fn table(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
+    let [poses, points] = evidence.both_runs(PaperFormulation::Adjoint, false)?;
+    let prescribed = tables::prescribed_robot().home.translation;
     let point = (evidence.end_of_points()?.base_from_target[0].translation - prescribed).amax();
     let largest = poses.screw_error_max.max(points.screw_error_max).max(point);
-    Ok(said(
+    Ok(make_claim(
         "The screws and the point of Table II are recovered.",
         "Table II.",
         (

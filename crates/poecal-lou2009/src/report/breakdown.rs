@@ -2,7 +2,7 @@
 
 use crate::{Breakdown, BreakdownEntry};
 use poecal_numerics::error::Result;
-use poecal_report::plot::{Axis, Line, LinePlot, Scale};
+use poecal_report::plot::{AxisScale, LinePlot, PlotAxis, PlotLine};
 use poecal_report::table::row;
 
 /// Widths of the shares and of each loss.
@@ -15,7 +15,7 @@ const ORDER: [&str; 4] = ["off", "huber", "cauchy", "tukey"];
 /// # Errors
 /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a number cannot be written.
 pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
-    let line = |(style, word): (usize, &&str)| Line {
+    let line = |(style, word): (usize, &&str)| PlotLine {
         name: (*word).to_owned(),
         style,
         points: entries(found, word)
@@ -29,8 +29,9 @@ pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
              the rows: least squares (off) and the three losses.",
             found.sessions
         ),
-        x: Axis::new("gross errors, % of the rows", Scale::Linear).including(&[0.0, 50.0]),
-        y: Axis::new("held-out error, times that without gross errors", Scale::Log).including(&[1.0]),
+        x: PlotAxis::new("gross errors, % of the rows", AxisScale::Linear).with_values(&[0.0, 50.0]),
+        y: PlotAxis::new("held-out error, times that without gross errors", AxisScale::Log)
+            .with_values(&[1.0]),
         lines: ORDER.iter().enumerate().map(line).collect(),
         mark: None,
     };

@@ -18,7 +18,7 @@ pub fn claims(found: &Reproduction) -> String {
             out.push('\n');
         }
         if said_by_paper {
-            let (holding, all) = found.holding(true);
+            let (holding, all) = found.count_holding(true);
             line(&mut out, "claims", &format!("{holding} of {all} hold as they are made"));
             out.push('\n');
         }

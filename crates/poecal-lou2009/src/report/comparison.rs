@@ -1,7 +1,7 @@
 //! The original formulation compared with the adjoint one, in words selected by the numbers.
 
-use super::numbers::{mm, number, percent, stated};
-use crate::{Formulation, MeasurementKind, Method, Reproduction, Residual, Run};
+use super::numbers::{format_stated, mm, number, percent};
+use crate::{ElbowRun, MeasurementKind, Method, PaperFormulation, PaperResidual, Reproduction};
 
 /// Without noise, with noise, with offsets, from distant starts: a paragraph for each supported by the findings.
 pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
@@ -14,15 +14,15 @@ pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
 fn without_noise(found: &Reproduction) -> Option<String> {
     let pair = |seen| {
         let run = |formulation| found.exact_run(formulation, seen, false);
-        Some((run(Formulation::Screw)?, run(Formulation::Adjoint)?))
+        Some((run(PaperFormulation::Screw)?, run(PaperFormulation::Adjoint)?))
     };
     let (poses, points) = (pair(MeasurementKind::Poses)?, pair(MeasurementKind::Points)?);
-    let as_good = |(screw, adjoint): (&Run, &Run)| {
+    let as_good = |(screw, adjoint): (&ElbowRun, &ElbowRun)| {
         screw.converged && adjoint.converged && screw.iterations <= adjoint.iterations + 1
     };
     let verdict = if as_good(poses) && as_good(points) { "are as good" } else { "are not as good" };
-    let end = |run: &Run| if run.converged { "" } else { " (not converged)" };
-    let words = |(screw, adjoint): (&Run, &Run), seen: MeasurementKind| {
+    let end = |run: &ElbowRun| if run.converged { "" } else { " (not converged)" };
+    let words = |(screw, adjoint): (&ElbowRun, &ElbowRun), seen: MeasurementKind| {
         format!(
             "from {} {} iterations{} to a held-out error of {} mm (`adjoint`: {}{})",
             seen.word(),
@@ -41,10 +41,10 @@ fn without_noise(found: &Reproduction) -> Option<String> {
 }
 
 fn with_noise(found: &Reproduction) -> Option<String> {
-    let fits = |formulation, seen| found.noisy_fits(formulation, seen, Residual::Tool);
+    let fits = |formulation, seen| found.noisy_fits(formulation, seen, PaperResidual::Tool);
     let (mut told, mut worse) = (Vec::new(), 0);
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
-        let (screw, adjoint) = (fits(Formulation::Screw, seen)?, fits(Formulation::Adjoint, seen)?);
+        let (screw, adjoint) = (fits(PaperFormulation::Screw, seen)?, fits(PaperFormulation::Adjoint, seen)?);
         let verdict = if screw.exceeds(adjoint) {
             worse += 1;
             "`screw` is worse"
@@ -71,7 +71,7 @@ fn with_noise(found: &Reproduction) -> Option<String> {
 
 fn with_offsets(found: &Reproduction) -> Option<String> {
     let of = |formulation| found.exact_run(formulation, MeasurementKind::Poses, true);
-    let (original, adjoint) = (of(Formulation::ScrewOffsets)?, of(Formulation::Adjoint)?);
+    let (original, adjoint) = (of(PaperFormulation::ScrewOffsets)?, of(PaperFormulation::Adjoint)?);
     let verdict = match (original.converged, adjoint.converged) {
         (true, true) => "predicts as well as `adjoint` without any",
         (true, false) => "predicts better than `adjoint` without any",
@@ -93,8 +93,10 @@ fn from_afar(found: &Reproduction) -> Option<String> {
     let row = |formulation, method| {
         found.basins(formulation, MeasurementKind::Points, method).find(|row| row.error_deg == furthest)
     };
-    let (screw, adjoint) =
-        (row(Formulation::Screw, Method::GaussNewton)?, row(Formulation::Adjoint, Method::GaussNewton)?);
+    let (screw, adjoint) = (
+        row(PaperFormulation::Screw, Method::GaussNewton)?,
+        row(PaperFormulation::Adjoint, Method::GaussNewton)?,
+    );
     let verdict = if screw.exceeds(adjoint) {
         "the original is better"
     } else if adjoint.exceeds(screw) {
@@ -105,10 +107,10 @@ fn from_afar(found: &Reproduction) -> Option<String> {
     Some(format!(
         "From afar {verdict}: from {} deg and {} mm, with points, plain Gauss-Newton reaches the truth from {} of the starts with `screw` \
          and from {} with `adjoint`; Levenberg-Marquardt with `adjoint` from {}.",
-        stated(screw.error_deg),
-        stated(screw.error_mm),
+        format_stated(screw.error_deg),
+        format_stated(screw.error_mm),
         percent(screw.share),
         percent(adjoint.share),
-        percent(row(Formulation::Adjoint, Method::LevenbergMarquardt)?.share)
+        percent(row(PaperFormulation::Adjoint, Method::LevenbergMarquardt)?.share)
     ))
 }

@@ -3,20 +3,20 @@
 use poecal_report::plot::NamedPlot;
 
 /// A report.
-pub(super) struct Document {
+pub(super) struct ReportDocument {
     pub(super) title: String,
-    pub(super) blocks: Vec<Block>,
+    pub(super) blocks: Vec<ReportBlock>,
 }
 
 /// A part of a report.
-pub(super) enum Block {
+pub(super) enum ReportBlock {
     Heading(String),
     /// A paragraph; words between backticks are code.
     Text(String),
     /// Typed or printed text.
     Code(String),
     Table(DocumentTable),
-    Figure(Figure),
+    Figure(PlotFigure),
 }
 
 /// A table; its rows are as long as its head.
@@ -29,16 +29,18 @@ pub(super) struct DocumentTable {
 }
 
 /// Plots with a caption.
-pub(super) struct Figure {
+pub(super) struct PlotFigure {
     pub(super) caption: String,
     pub(super) plots: Vec<NamedPlot>,
 }
 
-impl Document {
+impl ReportDocument {
     pub(super) fn into_plots(self) -> impl Iterator<Item = NamedPlot> {
         self.blocks.into_iter().flat_map(|block| match block {
-            Block::Figure(figure) => figure.plots,
-            Block::Heading(_) | Block::Text(_) | Block::Code(_) | Block::Table(_) => Vec::new(),
+            ReportBlock::Figure(figure) => figure.plots,
+            ReportBlock::Heading(_) | ReportBlock::Text(_) | ReportBlock::Code(_) | ReportBlock::Table(_) => {
+                Vec::new()
+            }
         })
     }
 }

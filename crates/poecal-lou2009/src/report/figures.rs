@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::document::Figure;
-use super::numbers::stated;
-use super::tables::distinct;
-use crate::{Formulation, Iteration, MatrixSpectrum, MeasurementKind, Reproduction, Run, ScrewRow};
-use poecal_report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
+use super::document::PlotFigure;
+use super::numbers::format_stated;
+use super::tables::distinct_values;
+use crate::{ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, PaperFormulation, Reproduction, ScrewRow};
+use poecal_report::plot::{AxisMark, AxisScale, DotPlot, Dots, LinePlot, NamedPlot, PlotAxis, PlotLine};
 
 const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
 /// Names of the parts of `v` and `ω`.
@@ -17,8 +17,8 @@ const WIDE_RATIO: f64 = 10.0;
 const LEAST_SHARE: f64 = 0.9;
 
 /// The style of a formulation, the same in every figure.
-fn style(formulation: Formulation) -> usize {
-    Formulation::ALL.iter().position(|other| *other == formulation).unwrap_or_default()
+fn style(formulation: PaperFormulation) -> usize {
+    PaperFormulation::ALL.iter().position(|other| *other == formulation).unwrap_or_default()
 }
 
 /// A value of an iteration over iterations, for all noise-free runs of a measurement.
@@ -29,8 +29,8 @@ fn trace_plot(
     value: fn(&Iteration) -> f64,
 ) -> LinePlot {
     let chosen =
-        |run: &&Run| run.measurement == seen && run.offsets_in_truth == offsets_in_truth && !run.noise;
-    let line = |run: &Run| Line {
+        |run: &&ElbowRun| run.measurement == seen && run.offsets_in_truth == offsets_in_truth && !run.noise;
+    let line = |run: &ElbowRun| PlotLine {
         name: run.formulation.word().to_owned(),
         style: style(run.formulation),
         points: run.trace.iter().enumerate().map(|(k, state)| [k as f64, value(state)]).collect(),
@@ -40,42 +40,42 @@ fn trace_plot(
     LinePlot {
         description: format!("{title}, by iteration, a line for each formulation."),
         title,
-        x: Axis::new("iteration", Scale::Count),
-        y: Axis::new(unit, Scale::Log),
+        x: PlotAxis::new("iteration", AxisScale::Count),
+        y: PlotAxis::new(unit, AxisScale::Log),
         lines: found.runs.iter().filter(chosen).map(line).collect(),
         mark: None,
     }
 }
 
-fn named(name: String, title: String, svg: String) -> NamedPlot {
+fn name_plot(name: String, title: String, svg: String) -> NamedPlot {
     NamedPlot { name: format!("figure-{name}"), title, svg }
 }
 
 fn named_lines(name: String, plot: LinePlot) -> NamedPlot {
     let svg = plot.svg();
-    named(name, plot.title, svg)
+    name_plot(name, plot.title, svg)
 }
 
 fn named_dots(name: String, plot: DotPlot) -> NamedPlot {
     let svg = plot.svg();
-    named(name, plot.title, svg)
+    name_plot(name, plot.title, svg)
 }
 
 /// Figure 1: residuals by iteration.
-pub(super) fn residuals(found: &Reproduction) -> Figure {
+pub(super) fn residuals(found: &Reproduction) -> PlotFigure {
     let plot = |seen: MeasurementKind| {
         let words = ("Residual", "RMS residual of position, mm");
         let plot = trace_plot(found, (seen, false), words, |state| 1e3 * state.residual_rms_m);
         named_lines(format!("1-residual-{}", seen.word()), plot)
     };
-    Figure {
+    PlotFigure {
         caption: "Figure 1. Residuals by iteration, without noise and without joint offsets in the truth. Iteration 0 is the nominal robot.".to_owned(),
         plots: SEEN.map(plot).into(),
     }
 }
 
 /// Figure 2: screw errors by iteration.
-pub(super) fn screw_errors(found: &Reproduction) -> Figure {
+pub(super) fn screw_errors(found: &Reproduction) -> PlotFigure {
     let plot = |(seen, offsets): (MeasurementKind, bool)| {
         let words = ("Screw error", "largest screw error, m (v), no unit (ω)");
         let plot = trace_plot(found, (seen, offsets), words, |state| state.screw_error_max);
@@ -83,14 +83,14 @@ pub(super) fn screw_errors(found: &Reproduction) -> Figure {
         named_lines(format!("2-screws-{}-{case}", seen.word()), plot)
     };
     let cases = [false, true].into_iter().flat_map(|offsets| SEEN.map(|seen| (seen, offsets)));
-    Figure {
+    PlotFigure {
         caption: "Figure 2. Largest difference of any screw coordinate from the prescribed one by iteration, without noise. The residual can vanish while the screws stay off: then several robots predict the same.".to_owned(),
         plots: cases.map(plot).collect(),
     }
 }
 
 /// Figure 3: nominal and identified screws against the prescribed ones.
-pub(super) fn deviations(found: &Reproduction) -> Figure {
+pub(super) fn deviations(found: &Reproduction) -> PlotFigure {
     let identified: [fn(&ScrewRow) -> &[f64; 6]; 3] =
         [|row| &row.nominal, |row| &row.from_poses, |row| &row.from_points];
     let screws = |part: Range<usize>, factor| {
@@ -115,7 +115,7 @@ pub(super) fn deviations(found: &Reproduction) -> Figure {
         ],
     );
     let of_omega = deviation_plot(("ω", "ω", "no unit"), names("ω"), screws(3..6, 1.0));
-    Figure {
+    PlotFigure {
         caption: "Figure 3. Distance of each coordinate from its prescribed value: before (nominal) and after identification, without noise.".to_owned(),
         plots: vec![
             named_dots("3-deviations-v".to_owned(), of_v),
@@ -135,7 +135,7 @@ fn deviation_plot(
     DotPlot {
         title: format!("Deviation of {title}"),
         description: format!("Differences of nominal and identified {what} from the prescribed ones."),
-        x: Axis::new(&format!("distance from prescribed, {unit}"), Scale::Log),
+        x: PlotAxis::new(&format!("distance from prescribed, {unit}"), AxisScale::Log),
         rows,
         series: names.map(dots).collect(),
         joined: true,
@@ -149,7 +149,7 @@ fn differences(values: &[f64], prescribed: &[f64], factor: f64) -> Vec<Option<f6
 }
 
 /// Figure 4: offsets.
-pub(super) fn offsets(found: &Reproduction) -> Figure {
+pub(super) fn offsets(found: &Reproduction) -> PlotFigure {
     let series = |name: &str, style, value: fn(&crate::OffsetRow) -> f64| Dots {
         name: name.to_owned(),
         style,
@@ -158,40 +158,40 @@ pub(super) fn offsets(found: &Reproduction) -> Figure {
     let plot = DotPlot {
         title: "Joint offsets".to_owned(),
         description: "Joint offsets: prescribed, and as two formulations identify them.".to_owned(),
-        x: Axis::new("joint offset, deg", Scale::Linear).including(&[0.0]),
+        x: PlotAxis::new("joint offset, deg", AxisScale::Linear).with_values(&[0.0]),
         rows: found.offsets.iter().map(|row| row.joint.clone()).collect(),
         series: vec![
             series("prescribed", 0, |row| row.prescribed_deg),
-            series(Formulation::ScrewOffsets.word(), style(Formulation::ScrewOffsets), |row| {
+            series(PaperFormulation::ScrewOffsets.word(), style(PaperFormulation::ScrewOffsets), |row| {
                 row.screw_offsets_deg
             }),
-            series(Formulation::AdjointOffsets.word(), style(Formulation::AdjointOffsets), |row| {
+            series(PaperFormulation::AdjointOffsets.word(), style(PaperFormulation::AdjointOffsets), |row| {
                 row.adjoint_offsets_deg
             }),
         ],
         joined: false,
         mark: None,
     };
-    Figure {
+    PlotFigure {
         caption: "Figure 4. Joint offsets: prescribed, and identified from poses without noise.".to_owned(),
         plots: vec![named_dots("4-offsets".to_owned(), plot)],
     }
 }
 
 /// Figure 5: singular values.
-pub(super) fn spectra(found: &Reproduction) -> Figure {
+pub(super) fn spectra(found: &Reproduction) -> PlotFigure {
     let plot = |(k, spectrum): (usize, &MatrixSpectrum)| {
         let values = spectrum.singular_values.iter().enumerate();
         let gap = (spectrum.rank < spectrum.columns)
-            .then(|| Mark { at: spectrum.rank as f64 + 0.5, label: format!("rank {}", spectrum.rank) });
+            .then(|| AxisMark { at: spectrum.rank as f64 + 0.5, label: format!("rank {}", spectrum.rank) });
         let title =
             format!("{}, {}: rank {} of {}", spectrum.matrix, spectrum.at, spectrum.rank, spectrum.columns);
         let plot = LinePlot {
             description: format!("Singular values, the largest first. {title}."),
             title,
-            x: Axis::new("number of the singular value", Scale::Count),
-            y: Axis::new("singular value, share of the largest", Scale::Log),
-            lines: vec![Line {
+            x: PlotAxis::new("number of the singular value", AxisScale::Count),
+            y: PlotAxis::new("singular value, share of the largest", AxisScale::Log),
+            lines: vec![PlotLine {
                 name: spectrum.matrix.clone(),
                 style: 0,
                 points: values.map(|(k, value)| [k as f64 + 1.0, *value]).collect(),
@@ -200,20 +200,21 @@ pub(super) fn spectra(found: &Reproduction) -> Figure {
         };
         named_lines(format!("5-singular-values-{:02}", k + 1), plot)
     };
-    Figure {
+    PlotFigure {
         caption: format!(
             "Figure 5. Singular values at the identified robot as shares of the largest. A dashed line marks the gap: singular values beyond it are rounding. A radian counts as {} m.",
-            stated(found.length_m)
+            format_stated(found.length_m)
         ),
         plots: found.spectra.iter().filter(|it| it.at == "identified").enumerate().map(plot).collect(),
     }
 }
 
 /// Figure 6: accuracy with noise against the bound.
-pub(super) fn efficiency(found: &Reproduction) -> Figure {
-    let rows = distinct(found.efficiency.iter().map(|row| (row.formulation, row.measurement)));
-    let ways = distinct(found.efficiency.iter().map(|row| (row.residual.as_str(), row.method.as_str())));
-    let ratio = |(formulation, seen): (Formulation, MeasurementKind), way: (&str, &str)| {
+pub(super) fn efficiency(found: &Reproduction) -> PlotFigure {
+    let rows = distinct_values(found.efficiency.iter().map(|row| (row.formulation, row.measurement)));
+    let ways =
+        distinct_values(found.efficiency.iter().map(|row| (row.residual.as_str(), row.method.as_str())));
+    let ratio = |(formulation, seen): (PaperFormulation, MeasurementKind), way: (&str, &str)| {
         let fits = |row: &&crate::Efficiency| {
             (row.formulation, row.measurement) == (formulation, seen)
                 && (row.residual.as_str(), row.method.as_str()) == way
@@ -226,21 +227,21 @@ pub(super) fn efficiency(found: &Reproduction) -> Figure {
         values: rows.iter().map(|row| ratio(*row, *way)).collect(),
     };
     let wide = found.efficiency.iter().any(|row| row.ratio.is_finite() && row.ratio > WIDE_RATIO);
-    let scale = if wide { Scale::Log } else { Scale::Linear };
+    let scale = if wide { AxisScale::Log } else { AxisScale::Linear };
     let plot = DotPlot {
         title: "Held-out error over the Cramér-Rao bound".to_owned(),
         description: "Ratio of the RMS held-out error of many noisy fits to the Cramér-Rao bound.".to_owned(),
         // A scatter of a percent must not fill the plot.
-        x: Axis::new("held-out RMS error over bound, ratio", scale).including(&[0.9, 1.1]),
+        x: PlotAxis::new("held-out RMS error over bound, ratio", scale).with_values(&[0.9, 1.1]),
         rows: rows
             .iter()
             .map(|(formulation, seen)| format!("{}, {}", formulation.word(), seen.word()))
             .collect(),
         series: ways.iter().enumerate().map(series).collect(),
         joined: false,
-        mark: Some(Mark { at: 1.0, label: "bound".to_owned() }),
+        mark: Some(AxisMark { at: 1.0, label: "bound".to_owned() }),
     };
-    Figure {
+    PlotFigure {
         caption: "Figure 6. Accuracy with noise: 1 is the best that any unbiased estimator can do."
             .to_owned(),
         plots: vec![named_dots("6-efficiency".to_owned(), plot)],
@@ -248,12 +249,12 @@ pub(super) fn efficiency(found: &Reproduction) -> Figure {
 }
 
 /// Figure 7: share of starts that converge.
-pub(super) fn basin(found: &Reproduction) -> Figure {
-    let panels = distinct(found.basin.iter().map(|row| (row.measurement, row.method.as_str())));
+pub(super) fn basin(found: &Reproduction) -> PlotFigure {
+    let panels = distinct_values(found.basin.iter().map(|row| (row.measurement, row.method.as_str())));
     let plot = |(k, (seen, method)): (usize, &(MeasurementKind, &str))| {
         let here =
             || found.basin.iter().filter(|row| (row.measurement, row.method.as_str()) == (*seen, *method));
-        let line = |formulation: Formulation| Line {
+        let line = |formulation: PaperFormulation| PlotLine {
             name: formulation.word().to_owned(),
             style: style(formulation),
             points: here()
@@ -265,14 +266,14 @@ pub(super) fn basin(found: &Reproduction) -> Figure {
         let plot = LinePlot {
             description: format!("{title}: share by the error of the start, a line for each formulation."),
             title,
-            x: Axis::new("error of each axis, deg", Scale::Linear).including(&[0.0]),
-            y: Axis::new("share of starts", Scale::Linear).including(&[LEAST_SHARE, 1.0]),
-            lines: distinct(here().map(|row| row.formulation)).into_iter().map(line).collect(),
+            x: PlotAxis::new("error of each axis, deg", AxisScale::Linear).with_values(&[0.0]),
+            y: PlotAxis::new("share of starts", AxisScale::Linear).with_values(&[LEAST_SHARE, 1.0]),
+            lines: distinct_values(here().map(|row| row.formulation)).into_iter().map(line).collect(),
             mark: None,
         };
         named_lines(format!("7-basin-{}-{}", seen.word(), k + 1), plot)
     };
-    Figure {
+    PlotFigure {
         caption: "Figure 7. Share of starts from which the truth is reached, without noise. The axis of shares does not begin at 0."
             .to_owned(),
         plots: panels.iter().enumerate().map(plot).collect(),

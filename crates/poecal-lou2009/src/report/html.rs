@@ -2,12 +2,12 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::document::{Block, Document, DocumentTable, Figure};
+use super::document::{DocumentTable, PlotFigure, ReportBlock, ReportDocument};
 use poecal_numerics::text::visible_markup;
 
 const STYLE: &str = include_str!("report.css");
 
-pub(super) fn html(document: &Document) -> String {
+pub(super) fn html(document: &ReportDocument) -> String {
     visible_markup(html! {
         (DOCTYPE)
         html lang="en" {
@@ -24,19 +24,19 @@ pub(super) fn html(document: &Document) -> String {
     })
 }
 
-fn of_block(block: &Block) -> Markup {
+fn of_block(block: &ReportBlock) -> Markup {
     match block {
-        Block::Heading(text) => html! { h2 { (text) } },
-        Block::Text(text) => html! {
+        ReportBlock::Heading(text) => html! { h2 { (text) } },
+        ReportBlock::Text(text) => html! {
             p {
                 @for (k, piece) in text.split('`').enumerate() {
                     @if k % 2 == 1 { code { (piece) } } @else { (piece) }
                 }
             }
         },
-        Block::Code(text) => html! { pre { code { (text) } } },
-        Block::Table(table) => of_table(table),
-        Block::Figure(figure) => of_figure(figure),
+        ReportBlock::Code(text) => html! { pre { code { (text) } } },
+        ReportBlock::Table(table) => of_table(table),
+        ReportBlock::Figure(figure) => of_figure(figure),
     }
 }
 
@@ -73,7 +73,7 @@ fn is_long(cell: &str) -> bool {
     cell.chars().count() > 30
 }
 
-fn of_figure(figure: &Figure) -> Markup {
+fn of_figure(figure: &PlotFigure) -> Markup {
     // The plots' own writer has escaped all their texts.
     html! {
         figure {

@@ -1,21 +1,21 @@
 //! A report as Markdown, with its plots in files beside it.
 
-use super::document::{Block, Document, DocumentTable};
+use super::document::{DocumentTable, ReportBlock, ReportDocument};
 use poecal_report::plot::NamedPlot;
 
-pub(super) fn markdown(document: &Document) -> String {
-    let mut out = format!("# {}\n", plain(&document.title));
+pub(super) fn markdown(document: &ReportDocument) -> String {
+    let mut out = format!("# {}\n", plain_text(&document.title));
     for block in &document.blocks {
         out.push('\n');
         out += &match block {
-            Block::Heading(text) => format!("## {}\n", plain(text)),
-            Block::Text(text) => format!("{}\n", with_code(text)),
-            Block::Code(text) => text.lines().map(|line| format!("    {line}\n")).collect(),
-            Block::Table(table) => of_table(table),
-            Block::Figure(figure) => {
-                let plot = |it: &NamedPlot| format!("![{}]({}.svg)\n", plain(&it.title), it.name);
+            ReportBlock::Heading(text) => format!("## {}\n", plain_text(text)),
+            ReportBlock::Text(text) => format!("{}\n", with_code(text)),
+            ReportBlock::Code(text) => text.lines().map(|line| format!("    {line}\n")).collect(),
+            ReportBlock::Table(table) => of_table(table),
+            ReportBlock::Figure(figure) => {
+                let plot = |it: &NamedPlot| format!("![{}]({}.svg)\n", plain_text(&it.title), it.name);
                 let plots: String = figure.plots.iter().map(plot).collect();
-                format!("{plots}\n{}\n", plain(&figure.caption))
+                format!("{plots}\n{}\n", plain_text(&figure.caption))
             }
         };
     }
@@ -23,13 +23,13 @@ pub(super) fn markdown(document: &Document) -> String {
 }
 
 fn of_table(table: &DocumentTable) -> String {
-    let mut out = format!("{}\n\n", plain(&table.caption));
+    let mut out = format!("{}\n\n", plain_text(&table.caption));
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    out.push_str(&row(table.head.iter().map(|cell| plain(cell)).collect()));
+    out.push_str(&row(table.head.iter().map(|cell| plain_text(cell)).collect()));
     let rule = |k: usize| if k < table.words { "---" } else { "---:" }.to_owned();
     out.push_str(&row((0..table.head.len()).map(rule).collect()));
     for cells in &table.rows {
-        out.push_str(&row(cells.iter().map(|cell| plain(cell)).collect()));
+        out.push_str(&row(cells.iter().map(|cell| plain_text(cell)).collect()));
     }
     out
 }
@@ -37,11 +37,11 @@ fn of_table(table: &DocumentTable) -> String {
 /// Text in which words between backticks are code, which needs no escapes.
 fn with_code(text: &str) -> String {
     let pieces = text.split('`').enumerate();
-    pieces.map(|(k, piece)| if k % 2 == 1 { format!("`{piece}`") } else { plain(piece) }).collect()
+    pieces.map(|(k, piece)| if k % 2 == 1 { format!("`{piece}`") } else { plain_text(piece) }).collect()
 }
 
 /// Text on one line in which nothing is markup.
-fn plain(text: &str) -> String {
+fn plain_text(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -58,10 +58,10 @@ fn plain(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::plain;
+    use super::plain_text;
 
     #[test]
     fn markup_in_text_stays_text() {
-        assert_eq!(plain("a|b <i>\nP_c0*"), "a\\|b \\<i> P_c0\\*");
+        assert_eq!(plain_text("a|b <i>\nP_c0*"), "a\\|b \\<i> P_c0\\*");
     }
 }

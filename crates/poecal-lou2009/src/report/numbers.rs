@@ -25,7 +25,7 @@ pub(super) fn mm(metres: f64) -> String {
 }
 
 /// A chosen size in its original form: without digits that rounding adds.
-pub(super) fn stated(value: f64) -> String {
+pub(super) fn format_stated(value: f64) -> String {
     let rounded = (value * 1e9).round() / 1e9;
     if rounded.is_finite() && value.abs() < 1e6 { format!("{rounded}") } else { number(value) }
 }
@@ -58,7 +58,7 @@ mod tests {
         assert_eq!([0.0, 1.25, -12.5, -3e-11].map(number), ["0", "1.250", "-12.50", "-3.0e-11"]);
         assert_eq!([f64::NAN, f64::INFINITY, 1e7].map(number), ["not a number", "infinite", "1.0e7"]);
         assert_eq!(
-            [20.0, 5e-5 * 1e3, 0.01_f64.to_radians().to_degrees()].map(stated),
+            [20.0, 5e-5 * 1e3, 0.01_f64.to_radians().to_degrees()].map(format_stated),
             ["20", "0.05", "0.01"]
         );
         assert_eq!([1.0, 0.9612, f64::NAN].map(percent), ["100.0 %", "96.1 %", "not a number"]);

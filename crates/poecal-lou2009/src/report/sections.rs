@@ -1,10 +1,10 @@
 //! The report's text around its tables and figures.
 
-use super::document::{Block, Document};
-use super::numbers::{mm, number, stated};
+use super::document::{ReportBlock, ReportDocument};
+use super::numbers::{format_stated, mm, number};
 use super::tables::largest_difference;
 use super::{comparison, figures, tables};
-use crate::{Formulation, MeasurementKind, Reproduction, Run, ScrewRow};
+use crate::{ElbowRun, MeasurementKind, PaperFormulation, Reproduction, ScrewRow};
 
 const REFERENCE: &str = "lou2009: Y. Lou, T. Chen, Y. Wu, Z. Li, S. Jiang. Improved and modified geometric formulation of POE based kinematic calibration of serial robots. IEEE/RSJ International Conference on Intelligent Robots and Systems (IROS), 2009.";
 const WHAT: &str = "This report repeats the experiment of lou2009 and sets what was measured beside what the paper says. The robot is the elbow manipulator of the paper's Tables I and II. Every number comes from the run that wrote this report, and stands in `results.json` too.";
@@ -14,51 +14,51 @@ const OWN: &str = "The paper does not say how many measurements its simulations 
 const RANKS: &str = "A matrix without full rank has columns that do nothing, or that do together what others do: these parameters cannot be separated by any measurement of this kind.";
 const STARTS: &str = "Here the truth is random and every fit starts at the nominal elbow. Each axis and the tip of the truth is turned and shifted off the nominal one in random directions, by exactly the stated angle and distance. A start counts if the fit ends at the truth: held-out error below 1 µm, without noise. With points, the start is exactly the singular place of Table II, the point on axis 6, where the matrix has rank 25 and not 27. With poses, Gauss-Newton has the paper's residual and Levenberg-Marquardt that at the tool, so the two differ in both.";
 
-pub(super) fn document(found: &Reproduction) -> Document {
+pub(super) fn document(found: &Reproduction) -> ReportDocument {
     let mut blocks = vec![
         text(WHAT),
-        text(&own(found)),
+        text(&own_findings(found)),
         text(REFERENCE),
         text("The same files are made by:"),
-        Block::Code(found.command.clone()),
+        ReportBlock::Code(found.command.clone()),
         text(&setting(found)),
         text(FORMULATIONS),
-        heading("What the paper says"),
-        text(&holding(found)),
-        Block::Table(tables::claims(found)),
-        heading("What the paper leaves out"),
+        heading_block("What the paper says"),
+        text(&describe_holding(found)),
+        ReportBlock::Table(tables::claims(found)),
+        heading_block("What the paper leaves out"),
         text(&left_out(found)),
-        Block::Table(tables::left_out(found)),
-        heading("Convergence"),
+        ReportBlock::Table(tables::left_out(found)),
+        heading_block("Convergence"),
         text(&convergence(found)),
-        Block::Figure(figures::residuals(found)),
-        Block::Figure(figures::screw_errors(found)),
-        Block::Table(tables::runs(found)),
+        ReportBlock::Figure(figures::residuals(found)),
+        ReportBlock::Figure(figures::screw_errors(found)),
+        ReportBlock::Table(tables::runs(found)),
     ];
-    blocks.extend(identified(found));
+    blocks.extend(identified_blocks(found));
     blocks.extend([
-        heading("Ranks"),
-        text(&format!("{RANKS} A radian counts as {} m in them.", stated(found.length_m))),
-        Block::Table(tables::ranks(found)),
-        Block::Figure(figures::spectra(found)),
-        heading("Accuracy with noise"),
+        heading_block("Ranks"),
+        text(&format!("{RANKS} A radian counts as {} m in them.", format_stated(found.length_m))),
+        ReportBlock::Table(tables::ranks(found)),
+        ReportBlock::Figure(figures::spectra(found)),
+        heading_block("Accuracy with noise"),
         text(&accuracy(found)),
-        Block::Figure(figures::efficiency(found)),
-        Block::Table(tables::efficiency(found)),
-        heading("Convergence from afar"),
+        ReportBlock::Figure(figures::efficiency(found)),
+        ReportBlock::Table(tables::efficiency(found)),
+        heading_block("Convergence from afar"),
         text(STARTS),
-        Block::Figure(figures::basin(found)),
-        Block::Table(tables::basin(found)),
-        heading("Where the original is as good, and where it is not"),
+        ReportBlock::Figure(figures::basin(found)),
+        ReportBlock::Table(tables::basin(found)),
+        heading_block("Where the original is as good, and where it is not"),
     ]);
     blocks.extend(comparison::sentences(found).iter().map(|sentence| text(sentence)));
-    Document { title: "Reproduction of lou2009".to_owned(), blocks }
+    ReportDocument { title: "Reproduction of lou2009".to_owned(), blocks }
 }
 
 /// Parts of the experiment that the paper does not state.
-fn own(found: &Reproduction) -> String {
+fn own_findings(found: &Reproduction) -> String {
     let count = |seen| found.runs.iter().find(|run| run.measurement == seen).map(|run| run.measurements);
-    let offsets: Vec<String> = found.offsets.iter().map(|row| stated(row.prescribed_deg)).collect();
+    let offsets: Vec<String> = found.offsets.iter().map(|row| format_stated(row.prescribed_deg)).collect();
     match (count(MeasurementKind::Poses), count(MeasurementKind::Points)) {
         (Some(poses), Some(points)) => format!(
             "{OWN} There are {poses} poses or {points} points, and joint offsets, where there are any, of {} deg.",
@@ -91,25 +91,25 @@ fn accuracy(found: &Reproduction) -> String {
     )
 }
 
-fn identified(found: &Reproduction) -> [Block; 8] {
+fn identified_blocks(found: &Reproduction) -> [ReportBlock; 8] {
     [
-        heading("Identified against prescribed"),
+        heading_block("Identified against prescribed"),
         text(&screws(found)),
-        Block::Figure(figures::deviations(found)),
-        Block::Table(tables::screws(found)),
-        Block::Table(tables::point(found)),
+        ReportBlock::Figure(figures::deviations(found)),
+        ReportBlock::Table(tables::screws(found)),
+        ReportBlock::Table(tables::point(found)),
         text(&offsets(found)),
-        Block::Figure(figures::offsets(found)),
-        Block::Table(tables::offsets(found)),
+        ReportBlock::Figure(figures::offsets(found)),
+        ReportBlock::Table(tables::offsets(found)),
     ]
 }
 
-fn text(words: &str) -> Block {
-    Block::Text(words.to_owned())
+fn text(words: &str) -> ReportBlock {
+    ReportBlock::Text(words.to_owned())
 }
 
-fn heading(words: &str) -> Block {
-    Block::Heading(words.to_owned())
+fn heading_block(words: &str) -> ReportBlock {
+    ReportBlock::Heading(words.to_owned())
 }
 
 fn setting(found: &Reproduction) -> String {
@@ -117,20 +117,20 @@ fn setting(found: &Reproduction) -> String {
         "Made by poecal {}, seed {}. Noise, where there is any, has a standard deviation of {} mm in each component of position and {} deg in each component of rotation.",
         found.version,
         found.seed,
-        stated(1e3 * found.noise_position_m),
-        stated(found.noise_rotation_rad.to_degrees())
+        format_stated(1e3 * found.noise_position_m),
+        format_stated(found.noise_rotation_rad.to_degrees())
     )
 }
 
-fn holding(found: &Reproduction) -> String {
-    let (holding, all) = found.holding(true);
+fn describe_holding(found: &Reproduction) -> String {
+    let (holding, all) = found.count_holding(true);
     format!(
         "{holding} of {all} statements hold as they are made; the table says by which criterion. Where one does not, the measured column says what does."
     )
 }
 
 fn left_out(found: &Reproduction) -> String {
-    let (holding, all) = found.holding(false);
+    let (holding, all) = found.count_holding(false);
     format!(
         "Findings that the paper does not mention, and that its statements are not counted by: {holding} of {all} hold in this run."
     )
@@ -139,7 +139,7 @@ fn left_out(found: &Reproduction) -> String {
 /// Number of iterations of each formulation.
 fn convergence(found: &Reproduction) -> String {
     let start = "Plain Gauss-Newton, as in the paper, from the nominal screws; no noise, no joint offsets in the truth.";
-    let words = |run: &Run| {
+    let words = |run: &ElbowRun| {
         let end = if run.converged { "" } else { ", not converged" };
         format!("`{}` {}{end}", run.formulation.word(), run.iterations)
     };
@@ -154,7 +154,11 @@ fn convergence(found: &Reproduction) -> String {
 }
 
 /// The largest difference of a part of the screws from prescribed.
-fn furthest(found: &Reproduction, of: fn(&ScrewRow) -> &[f64; 6], part: std::ops::Range<usize>) -> f64 {
+fn largest_screw_difference(
+    found: &Reproduction,
+    of: fn(&ScrewRow) -> &[f64; 6],
+    part: std::ops::Range<usize>,
+) -> f64 {
     let (values, prescribed): (Vec<f64>, Vec<f64>) = found
         .screws
         .iter()
@@ -165,7 +169,11 @@ fn furthest(found: &Reproduction, of: fn(&ScrewRow) -> &[f64; 6], part: std::ops
 
 fn screws(found: &Reproduction) -> String {
     let both = |of: fn(&ScrewRow) -> &[f64; 6]| {
-        format!("{} mm in v and {} in ω", mm(furthest(found, of, 0..3)), number(furthest(found, of, 3..6)))
+        format!(
+            "{} mm in v and {} in ω",
+            mm(largest_screw_difference(found, of, 0..3)),
+            number(largest_screw_difference(found, of, 3..6))
+        )
     };
     format!(
         "Table II is printed with four digits, so its screws are not quite screws. The prescribed robot has the nearest true ones; these differ from the printed ones by at most {}. The screws identified by `adjoint` without noise differ from the prescribed ones by at most {} from poses, and by at most {} from points. The nominal ones differ by up to {}.",
@@ -181,7 +189,7 @@ fn offsets(found: &Reproduction) -> String {
     let off = |identified: Vec<f64>| number(largest_difference(&identified, &prescribed));
     let screw = off(found.offsets.iter().map(|row| row.screw_offsets_deg).collect());
     let adjoint = off(found.offsets.iter().map(|row| row.adjoint_offsets_deg).collect());
-    let held_out = |formulation: Formulation| {
+    let held_out = |formulation: PaperFormulation| {
         found.exact_run(formulation, MeasurementKind::Poses, true).map_or(String::new(), |run| {
             format!(
                 " Its error of prediction on configurations that were not measured is {} mm.",
@@ -191,7 +199,7 @@ fn offsets(found: &Reproduction) -> String {
     };
     format!(
         "In this part the true robot has joint offsets too. From poses without noise, `screw-offsets` misses them by up to {screw} deg.{} `adjoint-offsets` misses them by up to {adjoint} deg.{}",
-        held_out(Formulation::ScrewOffsets),
-        held_out(Formulation::AdjointOffsets)
+        held_out(PaperFormulation::ScrewOffsets),
+        held_out(PaperFormulation::AdjointOffsets)
     )
 }

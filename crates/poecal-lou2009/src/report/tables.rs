@@ -1,8 +1,8 @@
 //! The tables of the report. Lengths in millimetres, as in the paper.
 
 use super::document::DocumentTable;
-use super::numbers::{four_decimals, mm, number, number_or_dash, percent, stated, yes_no};
-use crate::{Formulation, MeasurementKind, Reproduction, ScrewRow};
+use super::numbers::{format_stated, four_decimals, mm, number, number_or_dash, percent, yes_no};
+use crate::{MeasurementKind, PaperFormulation, Reproduction, ScrewRow};
 
 pub(super) fn claims(found: &Reproduction) -> DocumentTable {
     statements(found, true, "Table 1. What the paper says.", "claim")
@@ -26,7 +26,7 @@ fn statements(found: &Reproduction, said_by_paper: bool, caption: &str, what: &s
 }
 
 pub(super) fn runs(found: &Reproduction) -> DocumentTable {
-    let row = |run: &crate::Run| {
+    let row = |run: &crate::ElbowRun| {
         vec![
             run.formulation.word().to_owned(),
             run.measurement.word().to_owned(),
@@ -189,12 +189,12 @@ pub(super) fn efficiency(found: &Reproduction) -> DocumentTable {
 }
 
 pub(super) fn basin(found: &Reproduction) -> DocumentTable {
-    let sizes = distinct(found.basin.iter().map(|row| (row.error_deg, row.error_mm)));
+    let sizes = distinct_values(found.basin.iter().map(|row| (row.error_deg, row.error_mm)));
     let fit = |row: &crate::Basin| {
         (row.formulation, row.measurement, residual(row.measurement, &row.residual), row.method.clone())
     };
-    let fits = distinct(found.basin.iter().map(fit));
-    let row = |chosen: &(Formulation, MeasurementKind, String, String)| {
+    let fits = distinct_values(found.basin.iter().map(fit));
+    let row = |chosen: &(PaperFormulation, MeasurementKind, String, String)| {
         let here = || found.basin.iter().filter(|row| fit(row) == *chosen);
         let (formulation, seen, residual, method) = chosen;
         let trials = here().map(|row| row.trials).min().unwrap_or_default();
@@ -212,7 +212,9 @@ pub(super) fn basin(found: &Reproduction) -> DocumentTable {
         cells
     };
     let mut head = words(&["formulation", "seen", "residual", "method", "starts"]);
-    head.extend(sizes.iter().map(|(deg, mm)| format!("{} deg, {} mm", stated(*deg), stated(*mm))));
+    head.extend(
+        sizes.iter().map(|(deg, mm)| format!("{} deg, {} mm", format_stated(*deg), format_stated(*mm))),
+    );
     DocumentTable {
         caption: "Table 9. Share of starts that reach the truth, by how far each axis and the tip is off."
             .to_owned(),
@@ -235,7 +237,7 @@ fn words(words: &[&str]) -> Vec<String> {
 }
 
 /// The distinct values of a list, in the order of their first occurrence.
-pub(super) fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+pub(super) fn distinct_values<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
     let mut found = Vec::new();
     for value in values {
         if !found.contains(&value) {

@@ -1,8 +1,8 @@
 //! Made-up findings of a reproduction: of the right shape, with numbers from formulas. They are not measured.
 
 use poecal_lou2009::{
-    Basin, Claim, Efficiency, Formulation, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow,
-    Reproduction, Run, ScrewRow,
+    Basin, Claim, Efficiency, ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow,
+    PaperFormulation, PointRow, Reproduction, ScrewRow,
 };
 
 const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
@@ -31,9 +31,9 @@ pub(crate) fn findings() -> Reproduction {
     }
 }
 
-fn runs() -> Vec<Run> {
+fn runs() -> Vec<ElbowRun> {
     let mut runs = Vec::new();
-    for (k, formulation) in Formulation::ALL.into_iter().enumerate() {
+    for (k, formulation) in PaperFormulation::ALL.into_iter().enumerate() {
         for measurement in SEEN {
             for (offsets_in_truth, noise) in [(false, false), (true, false), (false, true), (true, true)] {
                 let iterations = 4 + k + usize::from(measurement == MeasurementKind::Points);
@@ -44,7 +44,7 @@ fn runs() -> Vec<Run> {
                     residual_rms_m: (if j == 0 { 0.03 } else { found(j) }).max(floor),
                     screw_error_max: (if j == 0 { 0.08 } else { found(j) }).max(stuck),
                 });
-                runs.push(Run {
+                runs.push(ElbowRun {
                     formulation,
                     measurement,
                     offsets_in_truth,
@@ -173,7 +173,7 @@ fn spectra() -> Vec<MatrixSpectrum> {
 
 fn efficiency() -> Vec<Efficiency> {
     let mut rows = Vec::new();
-    for (k, formulation) in Formulation::ALL.into_iter().enumerate() {
+    for (k, formulation) in PaperFormulation::ALL.into_iter().enumerate() {
         for measurement in SEEN {
             for (residual, method) in
                 [("tool", "gauss-newton"), ("spatial", "gauss-newton"), ("tool", "levenberg-marquardt")]
@@ -199,7 +199,7 @@ fn efficiency() -> Vec<Efficiency> {
 
 fn basin() -> Vec<Basin> {
     let mut rows = Vec::new();
-    for (k, formulation) in Formulation::ALL.into_iter().enumerate() {
+    for (k, formulation) in PaperFormulation::ALL.into_iter().enumerate() {
         for measurement in SEEN {
             for (method, extra) in [("gauss-newton", 0.0), ("levenberg-marquardt", 0.3)] {
                 for error_deg in [1.0, 5.0, 10.0, 20.0] {

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Vector3, Vector6};
 use poecal_arm::lie::{Pose, Twist};
 use poecal_lou2009::literal::AdjointErrors;
-use poecal_lou2009::{Formulation, MeasurementKind};
+use poecal_lou2009::{MeasurementKind, PaperFormulation};
 use poecal_model::robot::Robot;
 
 /// Arguments of the POE formula: free twists `ξ_i`, joint values, `M` as its logarithm or `exp(Υ) M`, `P_c0`.
@@ -46,7 +46,7 @@ fn unit(k: usize, step: f64) -> Vector6<f64> {
 pub(crate) fn steps<'a>(
     robot: &'a Robot,
     errors: &'a AdjointErrors,
-    formulation: Formulation,
+    formulation: PaperFormulation,
     seen: MeasurementKind,
 ) -> Vec<Step<'a>> {
     let mut steps: Vec<Step<'a>> = Vec::new();

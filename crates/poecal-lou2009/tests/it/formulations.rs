@@ -1,10 +1,12 @@
 //! The formulations of lou2009 side by side: their results, and their differences.
 
 use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
-use poecal_lou2009::{Formulation, Method, Residual, formulated};
+use poecal_lou2009::{Method, PaperFormulation, PaperResidual, to_formulation};
 use poecal_model::measurement::{Noise, Quantity};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, gantry, random_chain, scara, seven_axis};
+use poecal_model::simulate::{
+    SessionKind, Simulation, SimulationResult, elbow, gantry, random_chain, scara, seven_axis,
+};
 
 /// Noise-free fits end at the truth but for rounding of some hundred operations on metres.
 const EXACT_MM: f64 = 1e-7;
@@ -13,7 +15,7 @@ fn robots() -> Vec<Robot> {
     vec![elbow(), scara(), gantry(), seven_axis(), random_chain(6, 3), random_chain(8, 5)]
 }
 
-fn session(robot: &Robot, kind: Kind, noise: Noise, device_anywhere: bool) -> Simulated {
+fn session(robot: &Robot, kind: SessionKind, noise: Noise, device_anywhere: bool) -> SimulationResult {
     let simulation = Simulation {
         noise_position_m: noise[Quantity::Position],
         noise_rotation_rad: noise[Quantity::Rotation],
@@ -24,10 +26,10 @@ fn session(robot: &Robot, kind: Kind, noise: Noise, device_anywhere: bool) -> Si
     simulation.run(robot, kind).unwrap()
 }
 
-fn options(made: &Simulated, way: Formulation) -> CalibrationOptions {
+fn options(made: &SimulationResult, way: PaperFormulation) -> CalibrationOptions {
     let known = made.device_from_base == poecal_arm::lie::Pose::identity();
     let frame = if known { DeviceFrameKnowledge::Base } else { DeviceFrameKnowledge::Unknown };
-    let formulation = formulated(way, Residual::Tool, way.usual_method());
+    let formulation = to_formulation(way, PaperResidual::Tool, way.usual_method());
     CalibrationOptions { frame, formulation, ..CalibrationOptions::default() }
 }
 
@@ -40,10 +42,10 @@ fn worst_mm(calibration: &Calibration) -> f64 {
 fn every_formulation_finds_the_robot_without_noise() {
     let none = Noise::new(0.0, 0.0);
     for robot in robots() {
-        for kind in [Kind::POSE, Kind::POINT] {
+        for kind in [SessionKind::POSE, SessionKind::POINT] {
             for anywhere in [false, true] {
                 let made = session(&robot, kind, none, anywhere);
-                for formulation in Formulation::ALL {
+                for formulation in PaperFormulation::ALL {
                     let found = calibrate(&made.nominal, &made.data, &options(&made, formulation)).unwrap();
                     let worst = worst_mm(&found);
                     println!(
@@ -65,7 +67,7 @@ fn every_formulation_finds_the_robot_without_noise() {
 fn offsets_of_the_joints_are_found_without_being_unknowns() {
     let none = Noise::new(0.0, 0.0);
     for robot in robots() {
-        let mut made = session(&robot, Kind::POSE, none, false);
+        let mut made = session(&robot, SessionKind::POSE, none, false);
         let offsets: Vec<f64> =
             (0..robot.joints.len()).map(|k| 0.03 * (k as f64 * 1.3 + 0.4).sin()).collect();
         let shifted = poecal_model::offsets::into_screws(&made.actual, &offsets).unwrap();
@@ -77,8 +79,8 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
             ..Simulation::default()
         };
         let mut generator = rand_chacha::rand_core::SeedableRng::seed_from_u64(4);
-        made = exact.measure(&made.nominal, shifted, Kind::POSE, &mut generator).unwrap();
-        for formulation in Formulation::ALL {
+        made = exact.measure(&made.nominal, shifted, SessionKind::POSE, &mut generator).unwrap();
+        for formulation in PaperFormulation::ALL {
             let found = calibrate(&made.nominal, &made.data, &options(&made, formulation)).unwrap();
             println!("{:14} {:15} {:.1e} mm", robot.name, formulation.word(), worst_mm(&found));
             assert!(worst_mm(&found) < EXACT_MM);
@@ -90,23 +92,23 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
 #[test]
 fn formulations_part_with_noise() {
     let noise = Noise::new(5e-5, 2e-4);
-    let made = session(&elbow(), Kind::POINT, noise, false);
+    let made = session(&elbow(), SessionKind::POINT, noise, false);
     let fit = |formulation, method| {
         let mut options = options(&made, formulation);
         options.held_out = Some(0.0);
         // None of the formulations for comparison has a prior.
         options.tolerance = None;
-        options.formulation = formulated(formulation, Residual::Tool, method);
+        options.formulation = to_formulation(formulation, PaperResidual::Tool, method);
         options.solver.decrement = 1e-14;
         calibrate(&made.nominal, &made.data, &options).unwrap().accuracy.training.calibrated.position_mm().rms
     };
-    let best = fit(Formulation::Adjoint, Method::LevenbergMarquardt);
+    let best = fit(PaperFormulation::Adjoint, Method::LevenbergMarquardt);
     let others = [
-        fit(Formulation::Adjoint, Method::GaussNewton),
-        fit(Formulation::AdjointOffsets, Method::LevenbergMarquardt),
-        fit(Formulation::AdjointOffsets, Method::GaussNewton),
+        fit(PaperFormulation::Adjoint, Method::GaussNewton),
+        fit(PaperFormulation::AdjointOffsets, Method::LevenbergMarquardt),
+        fit(PaperFormulation::AdjointOffsets, Method::GaussNewton),
     ];
-    let free = fit(Formulation::Screw, Method::GaussNewton);
+    let free = fit(PaperFormulation::Screw, Method::GaussNewton);
     println!("residual, mm: adjoint {best:.9}, others {others:.9?}, free screws {free:.9}");
     // The residual is stationary there: a difference of parameters of 1e-6 changes it by its square.
     assert!(others.iter().all(|other| (other / best - 1.0).abs() < 1e-9));
@@ -116,10 +118,10 @@ fn formulations_part_with_noise() {
 /// The residual of the paper finds the same robot without noise, and a worse one with it.
 #[test]
 fn spatial_residual_costs_accuracy() {
-    let exact = session(&elbow(), Kind::POSE, Noise::new(0.0, 0.0), true);
-    let with = |residual| formulated(Formulation::Adjoint, residual, Method::LevenbergMarquardt);
+    let exact = session(&elbow(), SessionKind::POSE, Noise::new(0.0, 0.0), true);
+    let with = |residual| to_formulation(PaperFormulation::Adjoint, residual, Method::LevenbergMarquardt);
     let spatial =
-        CalibrationOptions { formulation: with(Residual::Spatial), ..CalibrationOptions::default() };
+        CalibrationOptions { formulation: with(PaperResidual::Spatial), ..CalibrationOptions::default() };
     let found = calibrate(&exact.nominal, &exact.data, &spatial).unwrap();
     println!("noise-free {:.1e} mm", worst_mm(&found));
     assert!(worst_mm(&found) < EXACT_MM);
@@ -134,9 +136,11 @@ fn spatial_residual_costs_accuracy() {
             device_anywhere: false,
             ..Simulation::default()
         };
-        let made = simulation.run(&elbow(), Kind::POSE).unwrap();
-        let unseen = simulation.held_out(&made, Kind::POSE, 100).unwrap();
-        for (residual, sum) in [(Residual::Spatial, &mut with_spatial), (Residual::Tool, &mut with_tool)] {
+        let made = simulation.run(&elbow(), SessionKind::POSE).unwrap();
+        let unseen = simulation.held_out(&made, SessionKind::POSE, 100).unwrap();
+        for (residual, sum) in
+            [(PaperResidual::Spatial, &mut with_spatial), (PaperResidual::Tool, &mut with_tool)]
+        {
             let options = CalibrationOptions {
                 frame: DeviceFrameKnowledge::Base,
                 formulation: with(residual),

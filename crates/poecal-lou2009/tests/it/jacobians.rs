@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_fit::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, ValueTerm};
 use poecal_fit::problem::Problem;
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session};
-use poecal_lou2009::{Formulation, FreeScrew, Residual};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session};
+use poecal_lou2009::{FreeScrew, PaperFormulation, PaperResidual};
 use poecal_model::measurement::{Dataset, Measurement, Noise};
 use poecal_model::robot::{Joint, Robot, Term};
 use poecal_numerics::solve::LeastSquares as _;
@@ -37,11 +37,11 @@ fn data(
     robot: &Robot,
     estimate: &Estimate,
     readings: &[f64],
-    residual: Option<Residual>,
+    residual: Option<PaperResidual>,
     turn: f64,
 ) -> Dataset {
-    let packed = Packed::new(robot, readings, readings.len());
-    let mut chain = Chain::default();
+    let packed = PackedValues::new(robot, readings, readings.len());
+    let mut chain = RowChain::default();
     chain.evaluate(&Linkage::new(estimate), &packed, 0, 0);
     let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turn));
     let position = chain.target.translation + Vector3::new(0.02, -0.01, 0.03);
@@ -51,7 +51,7 @@ fn data(
         Some(_) => Measurement::of_pose(&Pose::new(turn * chain.target.rotation, position)),
     };
     data.push(readings, None, measurement).unwrap();
-    data.pose_residual = residual.and_then(Residual::model);
+    data.pose_residual = residual.and_then(PaperResidual::model);
     data
 }
 
@@ -93,14 +93,14 @@ fn jacobians_agree_with_differences() {
     }
     let mut compared = 0;
     for (seen, residual) in
-        [("point", None), ("pose", Some(Residual::Tool)), ("spatial pose", Some(Residual::Spatial))]
+        [("point", None), ("pose", Some(PaperResidual::Tool)), ("spatial pose", Some(PaperResidual::Spatial))]
     {
         for &(name, parameter) in &parameters {
             let mut worst = 0.0;
             for value in [0.0, 1e-8, 0.9, PI - 1e-8] {
                 for angle in [0.0, 1e-8, 1.1, PI - 1e-3] {
                     let data = data(&robot, &state, &[value; 3], residual, angle);
-                    let packed = Packed::new(&robot, &[value; 3], 3);
+                    let packed = PackedValues::new(&robot, &[value; 3], 3);
                     let session = Session::new(&robot, &data, &packed, false).with_length(LENGTH_M);
                     let problem = Problem::new(session, vec![0], vec![parameter], NOISE);
                     // No step must carry the residual over half a turn, where its logarithm jumps. Free screws are normalised, which
@@ -146,18 +146,18 @@ fn the_kernels_sum_them_as_their_formulas_do() {
     let simulation =
         poecal_model::simulate::Simulation { count: 60, ..poecal_model::simulate::Simulation::default() };
     for (robot, kind) in [
-        (poecal_model::simulate::elbow(), poecal_model::measurement::Kind::POSE),
-        (poecal_model::simulate::gantry(), poecal_model::measurement::Kind::MIXED),
-        (poecal_model::simulate::scara(), poecal_model::measurement::Kind::POINT),
+        (poecal_model::simulate::elbow(), poecal_model::measurement::SessionKind::POSE),
+        (poecal_model::simulate::gantry(), poecal_model::measurement::SessionKind::MIXED),
+        (poecal_model::simulate::scara(), poecal_model::measurement::SessionKind::POINT),
     ] {
         for (formulation, residual) in [
-            (Formulation::Adjoint, Residual::Spatial),
-            (Formulation::ScrewOffsets, Residual::Tool),
-            (Formulation::Screw, Residual::Spatial),
+            (PaperFormulation::Adjoint, PaperResidual::Spatial),
+            (PaperFormulation::ScrewOffsets, PaperResidual::Tool),
+            (PaperFormulation::Screw, PaperResidual::Spatial),
         ] {
             let mut made = simulation.run(&robot, kind).unwrap();
             made.data.write_poses_by(residual.model());
-            let packed = poecal_fit::state::Packed::from_dataset(&robot, &made.data);
+            let packed = poecal_fit::state::PackedValues::from_dataset(&robot, &made.data);
             let seen = poecal_fit::state::Session::new(&robot, &made.data, &packed, true);
             let about = Vector3::new(0.3, 0.1, 0.2);
             let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, about))];

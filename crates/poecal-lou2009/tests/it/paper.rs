@@ -3,15 +3,15 @@
 use crate::formula::{Formula, differences, steps};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
 use poecal_arm::lie::{Pose, Twist, hat};
-use poecal_fit::parameters::{Columns, Parameter, ScrewAxis, TargetPlace, ValueTerm};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed};
+use poecal_fit::parameters::{Parameter, ParameterColumns, ScrewAxis, TargetPlace, ValueTerm};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain};
 use poecal_lou2009::literal::{
-    AdjointErrors, Literal, adjoint_jacobian, jacobian, point_rows, singular_values, stacked,
+    AdjointErrors, PaperMatrix, adjoint_jacobian, jacobian, point_rows, singular_values, stack_matrices,
 };
-use poecal_lou2009::{Formulation, FreeScrew, MeasurementKind, tables};
-use poecal_model::robot::{Limits, Robot, Term};
+use poecal_lou2009::{FreeScrew, MeasurementKind, PaperFormulation, tables};
+use poecal_model::robot::{JointLimits, Robot, Term};
 use poecal_model::simulate::{random, random_chain};
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use std::f64::consts::{PI, TAU};
@@ -33,7 +33,7 @@ fn configurations(robot: &Robot) -> Vec<Vec<f64>> {
 
 /// The elbow, and chains with sliding joints among turning ones.
 fn robots() -> Vec<Robot> {
-    let mut robots = vec![tables::nominal(), tables::prescribed()];
+    let mut robots = vec![tables::nominal_robot(), tables::prescribed_robot()];
     robots.extend((0..40).map(|seed| random_chain(6, seed)).filter(has_sliding_joint).take(3));
     assert_eq!(robots.len(), 5);
     robots
@@ -49,7 +49,7 @@ fn errors(robot: &Robot) -> [AdjointErrors; 2] {
         Twist::from_vector(&Vector6::from_fn(|row, _| 0.3 * (k * 2.3 + row as f64 * 1.7 + 0.5).sin()))
     };
     let eta = (0..robot.joints.len()).map(|k| twist(k as f64)).collect();
-    [AdjointErrors::none(robot), AdjointErrors { eta, upsilon: twist(9.0) }]
+    [AdjointErrors::zero(robot), AdjointErrors { eta, upsilon: twist(9.0) }]
 }
 
 /// `T_0 … T_n`.
@@ -82,17 +82,17 @@ fn closed_form_is_the_printed_integral() {
     let mut worst: f64 = 0.0;
     for robot in robots() {
         for values in configurations(&robot) {
-            let literal = Literal::new(&robot, &values);
+            let literal = PaperMatrix::new(&robot, &values);
             let prefixes = prefixes(&robot, &values);
             for (k, joint) in robot.joints.iter().enumerate() {
                 let xi = joint.screw.twist();
                 let integral = quadrature(&Twist::new(xi.v * values[k], xi.w * values[k]));
                 let printed = prefixes[k].adjoint() * integral * values[k];
                 let scale = prefixes[k].adjoint().norm() * integral.norm() * values[k].abs().max(1.0);
-                worst = larger(worst, (literal.screw_blocks[k] - printed).norm() / scale);
+                worst = larger_or_nan(worst, (literal.screw_blocks[k] - printed).norm() / scale);
             }
             let home = prefixes[prefixes.len() - 1].adjoint() * quadrature(&robot.home.log());
-            worst = larger(worst, (literal.home_block - home).norm() / home.norm());
+            worst = larger_or_nan(worst, (literal.home_block - home).norm() / home.norm());
         }
     }
     println!("Q_k and Q_M against quadrature: {worst:.1e}");
@@ -141,7 +141,7 @@ fn telescoping_jacobian_is_that_of_the_paper() {
                     let expected = telescoping(&robot, &errors, &values, seen);
                     // At a whole turn a joint's block vanishes: the terms of its difference set the scale.
                     let scale = expected.norm().max(1.0);
-                    worst = larger(worst, (literal - expected).norm() / scale);
+                    worst = larger_or_nan(worst, (literal - expected).norm() / scale);
                 }
             }
         }
@@ -152,7 +152,7 @@ fn telescoping_jacobian_is_that_of_the_paper() {
 
 #[test]
 fn literal_jacobians_are_the_derivatives_of_the_formula() {
-    for formulation in Formulation::ALL {
+    for formulation in PaperFormulation::ALL {
         for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
             let mut worst: f64 = 0.0;
             for robot in robots() {
@@ -160,7 +160,7 @@ fn literal_jacobians_are_the_derivatives_of_the_formula() {
                     let [none, some] = errors(&robot);
                     let cases = if formulation.has_free_screws() { vec![none] } else { vec![none, some] };
                     for errors in cases {
-                        let literal = if errors == AdjointErrors::none(&robot) {
+                        let literal = if errors == AdjointErrors::zero(&robot) {
                             jacobian(&robot, &values, formulation, seen)
                         } else {
                             adjoint_jacobian(&robot, &errors, &values, formulation.has_offsets(), seen)
@@ -168,7 +168,7 @@ fn literal_jacobians_are_the_derivatives_of_the_formula() {
                         let at = Formula::new(&errors.apply(&robot), &values);
                         let steps = steps(&robot, &errors, formulation, seen);
                         let numeric = differences(&at, &steps, seen);
-                        worst = larger(worst, (&literal - &numeric).norm() / numeric.norm());
+                        worst = larger_or_nan(worst, (&literal - &numeric).norm() / numeric.norm());
                     }
                 }
             }
@@ -190,9 +190,9 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
     for robot in robots() {
         let estimate = Estimate::new(&robot, vec![robot.home], device());
         for values in configurations(&robot) {
-            let literal = jacobian(&robot, &values, Formulation::Adjoint, MeasurementKind::Poses);
-            let packed = Packed::new(&robot, &values, values.len());
-            let mut chain = Chain::default();
+            let literal = jacobian(&robot, &values, PaperFormulation::Adjoint, MeasurementKind::Poses);
+            let packed = PackedValues::new(&robot, &values, values.len());
+            let mut chain = RowChain::default();
             chain.evaluate(&Linkage::new(&estimate), &packed, 0, 0);
             let mut to_target = Matrix6::identity();
             to_target.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&chain.target.translation));
@@ -205,16 +205,16 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
                 parameter.model().target_twists(&chain, 0, &mut twists);
                 for ((v, w), unknown) in twists.into_iter().zip(unknowns) {
                     let error = (Twist::new(v, w).to_vector() - in_axis.column(unknown)).norm();
-                    worst = larger(worst, error / block.norm().max(1.0));
+                    worst = larger_or_nan(worst, error / block.norm().max(1.0));
                 }
             }
             // The solver moves a point along the target's own axes, the paper along those of the base at zero.
-            let points = jacobian(&robot, &values, Formulation::Adjoint, MeasurementKind::Points);
+            let points = jacobian(&robot, &values, PaperFormulation::Adjoint, MeasurementKind::Points);
             let own = device().rotation * points.columns(points.ncols() - 3, 3) * robot.home.rotation;
             let mut twists = [(Vector3::zeros(), Vector3::zeros()); 3];
             TargetPlace { target: 0 }.target_twists(&chain, 0, &mut twists);
             for ((v, _), column) in twists.into_iter().zip(own.column_iter()) {
-                worst = larger(worst, (v - column).norm());
+                worst = larger_or_nan(worst, (v - column).norm());
             }
         }
     }
@@ -233,9 +233,9 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
             estimate = estimate.with_offsets(&vec![offset; robot.joints.len()]);
             for readings in configurations(&robot) {
                 let values: Vec<f64> = readings.iter().map(|reading| reading + offset).collect();
-                let literal = Literal::new(&robot, &values);
-                let packed = Packed::new(&robot, &readings, readings.len());
-                let mut chain = Chain::default();
+                let literal = PaperMatrix::new(&robot, &values);
+                let packed = PackedValues::new(&robot, &readings, readings.len());
+                let mut chain = RowChain::default();
                 chain.evaluate(&Linkage::new(&estimate), &packed, 0, 0);
                 let mut to_target = Matrix6::identity();
                 to_target.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&chain.target.translation));
@@ -250,12 +250,12 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                     free.model().target_twists(&chain, 0, &mut twists[..dim]);
                     for (k, &(v, w)) in twists[..dim].iter().enumerate() {
                         let error = (Twist::new(v, w).to_vector() - screw.column(k)).norm();
-                        worst = larger(worst, error / screw.norm().max(1.0));
+                        worst = larger_or_nan(worst, error / screw.norm().max(1.0));
                     }
                     shift.model().target_twists(&chain, 0, &mut twists[..1]);
                     let (v, w) = twists[0];
                     let column = seen * literal.offset_columns[i];
-                    worst = larger(
+                    worst = larger_or_nan(
                         worst,
                         (Twist::new(v, w).to_vector() - column).norm() / column.norm().max(1.0),
                     );
@@ -270,17 +270,18 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
 /// Random configurations within the robot's limits.
 fn within_limits(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let mut generator = ChaCha8Rng::seed_from_u64(2009);
-    let mut draw =
-        |limits: Limits| limits.lower + (limits.upper - limits.lower) * random::uniform(&mut generator);
+    let mut draw = |limits: JointLimits| {
+        limits.lower + (limits.upper - limits.lower) * random::uniform_number(&mut generator)
+    };
     (0..count)
         .map(|_| robot.joints.iter().filter_map(|joint| joint.limits).map(&mut draw).collect())
         .collect()
 }
 
 /// Rank and columns on 60 configurations. Prints the last counted singular value and the first uncounted one, as shares of the largest.
-fn rank(robot: &Robot, formulation: Formulation, seen: MeasurementKind) -> (usize, usize) {
+fn rank(robot: &Robot, formulation: PaperFormulation, seen: MeasurementKind) -> (usize, usize) {
     let length_m = robot.reach_m() / 3.0;
-    let matrix = stacked(robot, &within_limits(robot, 60), formulation, seen, length_m);
+    let matrix = stack_matrices(robot, &within_limits(robot, 60), formulation, seen, length_m);
     let (values, rank) = singular_values(&matrix);
     let share = |k: usize| values.get(k).map_or(0.0, |value| value / values[0]);
     let (last, next) = (share(rank - 1), share(rank));
@@ -292,7 +293,7 @@ fn rank(robot: &Robot, formulation: Formulation, seen: MeasurementKind) -> (usiz
 /// theory.md §7. At the nominal robot the point is on axis 6.
 #[test]
 fn ranks_of_the_elbow_are_those_of_the_theory() {
-    use Formulation::{Adjoint, AdjointOffsets, Screw, ScrewOffsets};
+    use PaperFormulation::{Adjoint, AdjointOffsets, Screw, ScrewOffsets};
     let expected = [
         (Adjoint, (30, 42), (27, 39), (25, 39)),
         (Screw, (42, 42), (39, 39), (36, 39)),
@@ -300,10 +301,10 @@ fn ranks_of_the_elbow_are_those_of_the_theory() {
         (AdjointOffsets, (30, 48), (27, 45), (25, 45)),
     ];
     for (formulation, poses, points, points_at_nominal) in expected {
-        assert_eq!(rank(&tables::prescribed(), formulation, MeasurementKind::Poses), poses);
-        assert_eq!(rank(&tables::nominal(), formulation, MeasurementKind::Poses), poses);
-        assert_eq!(rank(&tables::prescribed(), formulation, MeasurementKind::Points), points);
-        assert_eq!(rank(&tables::nominal(), formulation, MeasurementKind::Points), points_at_nominal);
+        assert_eq!(rank(&tables::prescribed_robot(), formulation, MeasurementKind::Poses), poses);
+        assert_eq!(rank(&tables::nominal_robot(), formulation, MeasurementKind::Poses), poses);
+        assert_eq!(rank(&tables::prescribed_robot(), formulation, MeasurementKind::Points), points);
+        assert_eq!(rank(&tables::nominal_robot(), formulation, MeasurementKind::Points), points_at_nominal);
     }
 }
 
@@ -314,7 +315,7 @@ fn ranks_of_mixed_chains_are_those_of_the_theory() {
         let p = robot.joints.iter().filter(|joint| joint.screw.is_prismatic()).count();
         let r = robot.joints.len() - p;
         for (seen, tool) in [(MeasurementKind::Poses, 6), (MeasurementKind::Points, 3)] {
-            for formulation in Formulation::ALL {
+            for formulation in PaperFormulation::ALL {
                 let joints = if formulation.has_free_screws() { 6 * r + 3 * p } else { 4 * r + 2 * p };
                 assert_eq!(rank(robot, formulation, seen).0, joints + tool);
             }
@@ -330,7 +331,7 @@ fn free_screws_are_elementary_in_the_axis_frame() {
         let robot = random_chain(6, seed);
         let estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
         let values = [0.0, 1e-8, 0.4, -2.1, 6.0, 0.9];
-        let literal = Literal::new(&robot, &values);
+        let literal = PaperMatrix::new(&robot, &values);
         for (i, joint) in robot.joints.iter().enumerate() {
             let before = robot.motion(&values[..i]) * estimate.base_from_axis[i];
             let free =
@@ -340,12 +341,12 @@ fn free_screws_are_elementary_in_the_axis_frame() {
             let turning = Matrix3::new(sine, -versine, 0.0, versine, sine, 0.0, 0.0, 0.0, values[i]);
             if joint.screw.is_prismatic() {
                 let shift = free.fixed_view::<3, 3>(0, 0) - Matrix3::identity() * values[i];
-                worst = larger(worst, shift.norm());
+                worst = larger_or_nan(worst, shift.norm());
             } else {
                 let mut expected = Matrix6::zeros();
                 expected.fixed_view_mut::<3, 3>(0, 0).copy_from(&turning);
                 expected.fixed_view_mut::<3, 3>(3, 3).copy_from(&turning);
-                worst = larger(worst, (free - expected).norm());
+                worst = larger_or_nan(worst, (free - expected).norm());
             }
         }
     }

@@ -1,11 +1,18 @@
 //! Requirements on the reproduction of lou2009, and its determinism.
 
-use poecal_lou2009::{Formulation, MeasurementKind, Reproduction, ReproductionOptions, Run, lou2009};
-use poecal_testing::largest::larger;
+use poecal_lou2009::{
+    ElbowRun, MeasurementKind, PaperFormulation, Reproduction, ReproductionOptions, lou2009,
+};
+use poecal_testing::largest::larger_or_nan;
 
 const FEW: ReproductionOptions = ReproductionOptions { trials: 60, starts: 20, seed: 1 };
 
-fn exact(found: &Reproduction, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> &Run {
+fn find_exact_run(
+    found: &Reproduction,
+    formulation: PaperFormulation,
+    seen: MeasurementKind,
+    offsets: bool,
+) -> &ElbowRun {
     found
         .runs
         .iter()
@@ -35,17 +42,17 @@ fn figures_of_the_paper() {
         );
         assert!(run.converged && run.held_out_rms_m < 1e-9 && run.equivalent_screw_error_max < 1e-9);
     }
-    let poses = exact(&found, Formulation::Adjoint, MeasurementKind::Poses, false);
-    let points = exact(&found, Formulation::Adjoint, MeasurementKind::Points, false);
+    let poses = find_exact_run(&found, PaperFormulation::Adjoint, MeasurementKind::Poses, false);
+    let points = find_exact_run(&found, PaperFormulation::Adjoint, MeasurementKind::Points, false);
     assert!(poses.iterations <= 5 && points.iterations <= 7);
     assert!(poses.screw_error_max < 1e-9 && points.screw_error_max < 1e-9);
     assert_eq!((poses.rank, poses.parameters), (30, 42));
     assert_eq!((points.rank, points.parameters), (27, 39));
-    let original = exact(&found, Formulation::ScrewOffsets, MeasurementKind::Poses, true);
+    let original = find_exact_run(&found, PaperFormulation::ScrewOffsets, MeasurementKind::Poses, true);
     assert_eq!((original.rank, original.parameters), (42, 48));
     assert!(original.offset_error_max_deg.unwrap() > 1.0);
     let worst = (0..3).map(|k| (found.point.from_points[k] - found.point.prescribed[k]).abs());
-    assert!(worst.fold(0.0, larger) < 1e-9);
+    assert!(worst.fold(0.0, larger_or_nan) < 1e-9);
     for row in &found.screws {
         for k in 0..6 {
             assert!((row.from_poses[k] - row.prescribed[k]).abs() < 1e-9);
@@ -57,7 +64,7 @@ fn figures_of_the_paper() {
 #[test]
 fn adjoint_form_is_efficient_and_the_original_is_not() {
     let found = lou2009(&FEW).unwrap();
-    let ratio = |formulation: Formulation, seen: MeasurementKind, residual: &str| {
+    let ratio = |formulation: PaperFormulation, seen: MeasurementKind, residual: &str| {
         let of = found.efficiency.iter().find(|it| {
             it.formulation == formulation
                 && it.measurement == seen
@@ -80,10 +87,10 @@ fn adjoint_form_is_efficient_and_the_original_is_not() {
     }
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         // Chance: 30 unknowns in 60 trials, a relative standard deviation of the RMS of 1 / √(2 · 30 · 60) = 1.7 %, times three.
-        assert!((ratio(Formulation::Adjoint, seen, "tool") - 1.0).abs() < 0.05);
-        assert!(ratio(Formulation::Screw, seen, "tool") > 1.1);
+        assert!((ratio(PaperFormulation::Adjoint, seen, "tool") - 1.0).abs() < 0.05);
+        assert!(ratio(PaperFormulation::Screw, seen, "tool") > 1.1);
     }
-    assert!(ratio(Formulation::Adjoint, MeasurementKind::Poses, "spatial") > 1.5);
+    assert!(ratio(PaperFormulation::Adjoint, MeasurementKind::Poses, "spatial") > 1.5);
 }
 
 #[test]
@@ -146,12 +153,12 @@ fn claims_tell_the_numbers_of_the_runs() {
         let near = |number: &f64| (number - value).abs() <= 0.51 * digits;
         assert!(told.iter().any(near), "{value} is not in {told:?}");
     };
-    let original = exact(&found, Formulation::ScrewOffsets, MeasurementKind::Poses, true);
+    let original = find_exact_run(&found, PaperFormulation::ScrewOffsets, MeasurementKind::Poses, true);
     let numbers = told("With joint offsets, the original formulation");
     has(&numbers, original.offset_error_max_deg.unwrap(), 0.01);
     has(&numbers, 1e3 * original.screw_error_max_v_m, 0.1);
     has(&numbers, original.screw_error_max_omega, 1e-4);
-    let adjoint = exact(&found, Formulation::Adjoint, MeasurementKind::Poses, true);
+    let adjoint = find_exact_run(&found, PaperFormulation::Adjoint, MeasurementKind::Poses, true);
     let numbers = told("Joint offsets need not");
     has(&numbers, 1e3 * adjoint.screw_error_max_v_m, 0.1);
     has(&numbers, adjoint.screw_error_max_omega, 1e-4);
@@ -176,29 +183,29 @@ fn lengths_and_directions_are_told_apart() {
         (MeasurementKind::Poses, (|row| &row.from_poses) as fn(&poecal_lou2009::ScrewRow) -> &[f64; 6]),
         (MeasurementKind::Points, |row| &row.from_points),
     ] {
-        let run = exact(&found, Formulation::Adjoint, seen, false);
+        let run = find_exact_run(&found, PaperFormulation::Adjoint, seen, false);
         let largest = |part: std::ops::Range<usize>| {
             let rows = found.screws.iter();
             rows.flat_map(|row| part.clone().map(|k| (of(row)[k] - row.prescribed[k]).abs()))
-                .fold(0.0, larger)
+                .fold(0.0, larger_or_nan)
         };
         // The run takes the true screws from their frames, the table as they are: rounding of a number of up to 1 m.
         assert!((run.screw_error_max_v_m - largest(0..3)).abs() < 1e-15);
         assert!((run.screw_error_max_omega - largest(3..6)).abs() < 1e-15);
     }
     // With offsets in the truth, the adjoint form ends at the equivalent robot, which equations (14) and (15) determine without any fit.
-    let prescribed = poecal_lou2009::tables::prescribed();
+    let prescribed = poecal_lou2009::tables::prescribed_robot();
     let offsets = poecal_lou2009::tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians);
     let equivalent = poecal_model::offsets::into_screws(&prescribed, &offsets).unwrap();
     let pairs = || prescribed.joints.iter().zip(&equivalent.joints);
-    let v = pairs().map(|(a, b)| (a.screw.v() - b.screw.v()).amax()).fold(0.0, larger);
-    let omega = pairs().map(|(a, b)| (a.screw.w() - b.screw.w()).amax()).fold(0.0, larger);
+    let v = pairs().map(|(a, b)| (a.screw.v() - b.screw.v()).amax()).fold(0.0, larger_or_nan);
+    let omega = pairs().map(|(a, b)| (a.screw.w() - b.screw.w()).amax()).fold(0.0, larger_or_nan);
     println!("equivalent robot: v off by {:.2} mm, ω by {omega:.4}", 1e3 * v);
     assert!((v - 0.0775).abs() < 1e-4 && (omega - 0.1687).abs() < 1e-4);
     for run in found
         .runs
         .iter()
-        .filter(|run| run.formulation == Formulation::Adjoint && run.offsets_in_truth && !run.noise)
+        .filter(|run| run.formulation == PaperFormulation::Adjoint && run.offsets_in_truth && !run.noise)
     {
         assert!(
             (run.screw_error_max_v_m - v).abs() < 1e-12 && (run.screw_error_max_omega - omega).abs() < 1e-12

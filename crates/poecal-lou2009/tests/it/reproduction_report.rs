@@ -3,7 +3,7 @@
 use crate::findings::findings;
 use poecal_lou2009::Reproduction;
 use poecal_lou2009::report::reproduction_files;
-use poecal_results::output::{Contents, Existing, FolderPlace, write_reproduction};
+use poecal_results::output::{Contents, ExistingFiles, ReservedFolder, write_reproduction};
 use poecal_testing::files::Folder;
 
 fn text(found: &Reproduction, name: &str) -> String {
@@ -16,7 +16,7 @@ fn plots(found: &Reproduction) -> Vec<(String, String)> {
 }
 
 /// Findings without any entry.
-fn empty() -> Reproduction {
+fn empty_reproduction() -> Reproduction {
     Reproduction {
         runs: vec![],
         claims: vec![],
@@ -60,7 +60,7 @@ fn all_numbers(value: f64) -> Reproduction {
 
 fn odd_findings() -> Vec<Reproduction> {
     let odd = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 5e-324].map(all_numbers);
-    odd.into_iter().chain([findings(), empty()]).collect()
+    odd.into_iter().chain([findings(), empty_reproduction()]).collect()
 }
 
 #[test]
@@ -206,14 +206,14 @@ fn a_second_run_replaces_the_first_and_leaves_other_files() {
     let folder = Folder::new();
     let out = folder.path("out");
     let files = reproduction_files(&findings()).unwrap();
-    let place = |existing| FolderPlace::reserve(&out, Contents::Reproduction, existing, &[], &mut |_| ());
-    let written = write_reproduction(place(Existing::Kept).unwrap(), &files).unwrap();
+    let place = |existing| ReservedFolder::reserve(&out, Contents::Reproduction, existing, &[], &mut |_| ());
+    let written = write_reproduction(place(ExistingFiles::Kept).unwrap(), &files).unwrap();
     assert_eq!(written.files.len(), files.len());
     std::fs::write(out.join("mine.svg"), "mine").unwrap();
-    let error = place(Existing::Kept).unwrap_err();
+    let error = place(ExistingFiles::Kept).unwrap_err();
     assert!(error.to_string().contains("--force"), "{error}");
-    let fewer = reproduction_files(&empty()).unwrap();
-    write_reproduction(place(Existing::Replaced).unwrap(), &fewer).unwrap();
+    let fewer = reproduction_files(&empty_reproduction()).unwrap();
+    write_reproduction(place(ExistingFiles::Replaced).unwrap(), &fewer).unwrap();
     let names =
         std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = names.filter(|name| name != "mine.svg").collect();

@@ -28,7 +28,7 @@ impl Board {
 
     /// Points by their numbers, if all of their names are one word with a number behind it, such as `corner0` and `dot12`; otherwise empty.
     #[must_use]
-    pub fn numbered(&self) -> BTreeMap<u32, u32> {
+    pub fn point_numbers(&self) -> BTreeMap<u32, u32> {
         let word = |name: &str| name.trim_end_matches(|it: char| it.is_ascii_digit()).len();
         let first = self.names.first().and_then(|name| name.get(..word(name)));
         let Some(first) = first.filter(|first| !first.ends_with('.')) else { return BTreeMap::new() };
@@ -85,7 +85,7 @@ impl Board {
 
     /// The same board in another size.
     #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
+    pub fn scale(&self, factor: f64) -> Self {
         Board { points: self.points.iter().map(|point| point * factor).collect(), ..self.clone() }
     }
 }

@@ -71,7 +71,7 @@ impl CommonError {
     /// Maximum-likelihood estimate, beginning from this one. Each pose has the expected squares of its deviation from the true one (m, rad) and
     /// the information of its corners; a fit has used `unknowns` degrees of freedom beside. Returns `-2 log L` with it.
     #[must_use]
-    pub fn likeliest(
+    pub fn estimate_likely(
         &self,
         seen: &[(Matrix6<f64>, Matrix6<f64>)],
         unknowns: f64,
@@ -97,14 +97,14 @@ impl CommonError {
                 let inner = Matrix6::identity() + root * spread * root;
                 let Some(factor) = linalg::cholesky_6(inner) else { return f64::INFINITY };
                 let logs: f64 = (0..6).map(|k| factor.l_dirty()[(k, k)].ln()).sum();
-                2.0 * logs + 6.0 * c.ln() + taken * bounded(factor.solve(whitened).trace() / c)
+                2.0 * logs + 6.0 * c.ln() + taken * bounded_loss(factor.solve(whitened).trace() / c)
             };
             roots.iter().map(of).sum::<f64>()
         };
         let [shift, turn] = [self.shift_m, self.turn_rad * length_m].map(|it| it.max(Self::FINEST).ln());
-        let alone = least(&surprise, [shift, turn, 0.0], 2);
+        let alone = minimize_logarithms(&surprise, [shift, turn, 0.0], 2);
         let start = if self.corners > 1.0 { [shift, turn, self.corners.ln()] } else { alone.0 };
-        let with_corners = least(&surprise, start, 3);
+        let with_corners = minimize_logarithms(&surprise, start, 3);
         let (at, best) = if with_corners.1 + EVIDENT < alone.1 { with_corners } else { alone };
         let [shift_m, turn_m, corners] = at.map(f64::exp);
         (CommonError { shift_m, turn_rad: turn_m / length_m, corners, ..*self }, best)
@@ -112,7 +112,7 @@ impl CommonError {
 }
 
 /// Minimum of a function of the first `free` of three logarithms: coordinate by coordinate, with steps that halve, and no derivative to get wrong.
-fn least(of: &impl Fn(&[f64; 3]) -> f64, start: [f64; 3], free: usize) -> ([f64; 3], f64) {
+fn minimize_logarithms(of: &impl Fn(&[f64; 3]) -> f64, start: [f64; 3], free: usize) -> ([f64; 3], f64) {
     let (mut at, mut step, mut best) = (start, 1.0, of(&start));
     while step > 1e-2 {
         let mut moved = false;
@@ -143,7 +143,7 @@ const EVIDENT: f64 = 10.83;
 
 /// Loss of the squares of six numbers, bounded so that a picture of another configuration has little effect: logarithmic beyond 5 standard
 /// deviations of each.
-fn bounded(square: f64) -> f64 {
+fn bounded_loss(square: f64) -> f64 {
     const FAR: f64 = 6.0 * 25.0;
     if square <= FAR { square } else { FAR * (1.0 + (square / FAR).ln()) }
 }
@@ -183,14 +183,14 @@ pub fn motion_by_inverse(pose: &Pose) -> Matrix6<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::moved;
+    use crate::camera::move_pose;
     use nalgebra::Vector3;
 
     #[test]
     fn the_inverse_moves_as_its_information_says() {
         let pose = Pose::from_xyz_rpy([0.1, -0.2, 0.7], [0.3, 2.0, -0.4]);
         let step = Vector6::new(1e-6, -2e-6, 3e-6, 2e-6, 1e-6, -1e-6);
-        let other = moved(&pose, &step).inverse();
+        let other = move_pose(&pose, &step).inverse();
         let turn = poecal_arm::lie::rotation::log(&(other.rotation * pose.inverse().rotation.transpose()));
         let shift: Vector3<f64> = other.translation - pose.inverse().translation;
         let back = Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
@@ -227,7 +227,7 @@ mod tests {
                         (information, off * off.transpose())
                     })
                     .collect();
-                let (found, _) = CommonError::default().likeliest(&seen, 0.0, length_m);
+                let (found, _) = CommonError::default().estimate_likely(&seen, 0.0, length_m);
                 shift += (found.shift_m / truth.shift_m).ln() / SESSIONS as f64;
                 turn += (found.turn_rad / truth.turn_rad).ln() / SESSIONS as f64;
                 times += (found.corners / corners).ln() / SESSIONS as f64;

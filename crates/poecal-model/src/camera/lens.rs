@@ -53,10 +53,10 @@ pub struct Projection {
 
 /// Position of a point in the plane of a pinhole with focal length 1, its derivative by the point, and those by the coefficients of the
 /// distortion.
-type Place = (Vector2<f64>, Matrix2x3<f64>, [[f64; 8]; 2]);
+type PinholePoint = (Vector2<f64>, Matrix2x3<f64>, [[f64; 8]; 2]);
 
 /// Position of a ray of slopes x/z and y/z in the plane of a pinhole with focal length 1, with derivatives.
-struct Bent {
+struct DistortedSlopes {
     place: Vector2<f64>,
     by_ray: Matrix2<f64>,
     by_coefficients: [[f64; 8]; 2],
@@ -119,7 +119,7 @@ impl Lens {
             (pixel.y - self.centre_px[1]) / self.focal_px[1],
         );
         let ray = match self.distortion {
-            Distortion::Brown(k) => unbent(&k, place)?,
+            Distortion::Brown(k) => undistort(&k, place)?,
             Distortion::Fisheye(k) => {
                 let bent = place.norm();
                 let mut angle = bent;
@@ -190,7 +190,7 @@ const NEWTON: usize = 30;
 
 /// Brown and Conrady: `x = a R + 2 p1 a b + p2 (r² + 2 a²)`, `y = b R + p1 (r² + 2 b²) + 2 p2 a b` with `R = (1 + k1 r² +
 /// k2 r⁴ + k3 r⁶)/(1 + k4 r² + k5 r⁴ + k6 r⁶)`. `None` where a larger slope would have a smaller image.
-fn brown(&[k1, k2, p1, p2, k3, k4, k5, k6]: &[f64; 8], a: f64, b: f64) -> Option<Bent> {
+fn brown(&[k1, k2, p1, p2, k3, k4, k5, k6]: &[f64; 8], a: f64, b: f64) -> Option<DistortedSlopes> {
     let s = a * a + b * b;
     let above = 1.0 + s * (k1 + s * (k2 + s * k3));
     let below = 1.0 + s * (k4 + s * (k5 + s * k6));
@@ -224,7 +224,7 @@ fn brown(&[k1, k2, p1, p2, k3, k4, k5, k6]: &[f64; 8], a: f64, b: f64) -> Option
     };
     let both = 2.0 * a * b;
     let by_coefficients = [of(a, both, s + 2.0 * a * a, true), of(b, both, s + 2.0 * b * b, false)];
-    Some(Bent { place, by_ray, by_coefficients })
+    Some(DistortedSlopes { place, by_ray, by_coefficients })
 }
 
 /// True if the image of a ray turns back before this square of its slope.
@@ -246,7 +246,7 @@ fn turns_back(&[k1, k2, k3, k4, k5, k6]: &[f64; 6], s: f64) -> bool {
 }
 
 /// Ray of an image position, by Newton's method from the axis outward.
-fn unbent(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
+fn undistort(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
     let mut slopes = place;
     let miss =
         |slopes: Vector2<f64>| brown(k, slopes.x, slopes.y).map(|bent| (bent.place - place, bent.by_ray));
@@ -290,7 +290,7 @@ fn bent_angle(&[k1, k2, k3, k4]: &[f64; 4], angle: f64) -> (f64, f64) {
 }
 
 /// Kannala and Brandt: the position is `θ_d (x, y)/r` with `θ = atan2(r, z)` and `θ_d = θ (1 + k1 θ² + k2 θ⁴ + k3 θ⁶ + k4 θ⁸)`.
-fn fisheye(k: &[f64; 4], point: &Vector3<f64>) -> Option<Place> {
+fn fisheye(k: &[f64; 4], point: &Vector3<f64>) -> Option<PinholePoint> {
     let across = Vector2::new(point.x, point.y);
     let (r, d) = (across.norm(), point.norm_squared());
     let angle = r.atan2(point.z);

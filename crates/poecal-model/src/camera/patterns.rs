@@ -10,7 +10,7 @@ const MOST: usize = 250;
 /// Corners of a tag from its middle, in halves of its side, y upwards: upper left, upper right, lower right, lower left.
 const AROUND: [[f64; 2]; 4] = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
 
-fn counted(what: &str, [columns, rows]: [usize; 2], least: usize) -> Result<()> {
+fn check_counts(what: &str, [columns, rows]: [usize; 2], least: usize) -> Result<()> {
     if [columns, rows].iter().all(|it| (least..=MOST).contains(it)) {
         return Ok(());
     }
@@ -19,7 +19,7 @@ fn counted(what: &str, [columns, rows]: [usize; 2], least: usize) -> Result<()> 
     Err(Error::new(ErrorKind::Option, message))
 }
 
-fn long(what: &str, length_m: f64) -> Result<()> {
+fn check_length(what: &str, length_m: f64) -> Result<()> {
     if length_m > 0.0 && length_m.is_finite() {
         return Ok(());
     }
@@ -33,8 +33,8 @@ impl Board {
     /// # Errors
     /// [`ErrorKind::Option`] if it has fewer than two corners along a side, or its squares have no size.
     pub fn chessboard(name: &str, [columns, rows]: [usize; 2], square_m: f64) -> Result<Self> {
-        counted("squares", [columns, rows], 3)?;
-        long("squares", square_m)?;
+        check_counts("squares", [columns, rows], 3)?;
+        check_length("squares", square_m)?;
         let places = (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| [column, row]));
         Ok(grid(name, "corner", places, square_m))
     }
@@ -50,8 +50,8 @@ impl Board {
         pitch_m: f64,
         is_asymmetric: bool,
     ) -> Result<Self> {
-        counted("dots", [columns, rows], if is_asymmetric { 2 } else { 3 })?;
-        long("a pitch", pitch_m)?;
+        check_counts("dots", [columns, rows], if is_asymmetric { 2 } else { 3 })?;
+        check_length("a pitch", pitch_m)?;
         let along =
             move |column: usize, row: usize| if is_asymmetric { 2 * column + row % 2 } else { column };
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| [along(column, row), row]));
@@ -65,8 +65,8 @@ impl Board {
     /// # Errors
     /// [`ErrorKind::Option`] if it has no tags, or no size.
     pub fn april_grid(name: &str, [columns, rows]: [usize; 2], size_m: f64, spacing: f64) -> Result<Self> {
-        counted("tags", [columns, rows], 1)?;
-        long("tags", size_m)?;
+        check_counts("tags", [columns, rows], 1)?;
+        check_length("tags", size_m)?;
         if !(spacing > 0.0 && spacing <= 1.0) {
             let message = format!(
                 "found {spacing:?} for the spacing of tags, expected a part of their side, above 0 and at most 1"
@@ -89,7 +89,7 @@ impl Board {
     /// # Errors
     /// [`ErrorKind::Option`] if it has no size.
     pub fn tag(name: &str, size_m: f64) -> Result<Self> {
-        long("a tag", size_m)?;
+        check_length("a tag", size_m)?;
         let points = AROUND.map(|[x, y]| Vector3::new(0.5 * x * size_m, 0.5 * y * size_m, 0.0)).to_vec();
         let names = (0..points.len()).map(|at| at.to_string()).collect();
         Ok(Board { name: name.to_owned(), names, points })
@@ -108,7 +108,7 @@ fn grid(name: &str, kind: &str, places: impl Iterator<Item = [usize; 2]>, pitch_
 mod tests {
     use super::*;
 
-    fn at(board: &Board, name: &str) -> [f64; 2] {
+    fn point_at(board: &Board, name: &str) -> [f64; 2] {
         let point = board.points[board.find(name).unwrap()];
         [point.x, point.y].map(|it| (it * 1e6).round() / 1e6)
     }
@@ -117,15 +117,15 @@ mod tests {
     fn points_are_where_opencv_and_kalibr_have_them() {
         let circles = Board::circles("board", [4, 11], 0.02, true).unwrap();
         assert_eq!(
-            (circles.names.len(), at(&circles, "dot5"), at(&circles, "dot8")),
+            (circles.names.len(), point_at(&circles, "dot5"), point_at(&circles, "dot8")),
             (44, [0.06, 0.02], [0.0, 0.04])
         );
-        assert_eq!(at(&Board::circles("board", [5, 4], 0.01, false).unwrap(), "dot6"), [0.01, 0.01]);
+        assert_eq!(point_at(&Board::circles("board", [5, 4], 0.01, false).unwrap(), "dot6"), [0.01, 0.01]);
         let grid = Board::april_grid("board", [6, 5], 0.088, 0.3).unwrap();
-        assert_eq!((grid.names.len(), at(&grid, "tag0.3")), (120, [0.0, 0.0]));
+        assert_eq!((grid.names.len(), point_at(&grid, "tag0.3")), (120, [0.0, 0.0]));
         // One pitch of 1.3 tags, and a tag: to rounding.
-        assert!(at(&grid, "tag7.1").iter().all(|it| (it - 2.3 * 0.088).abs() < 1e-15));
-        assert_eq!(at(&Board::tag("tag3", 0.05).unwrap(), "0"), [-0.025, 0.025]);
+        assert!(point_at(&grid, "tag7.1").iter().all(|it| (it - 2.3 * 0.088).abs() < 1e-15));
+        assert_eq!(point_at(&Board::tag("tag3", 0.05).unwrap(), "0"), [-0.025, 0.025]);
     }
 
     #[test]

@@ -69,7 +69,7 @@ impl Picture {
 
     /// Measurement of the row, from a pose of the board in the camera's frame, and the reverse.
     #[must_use]
-    pub fn directed(&self, pose: &Pose) -> Pose {
+    pub fn directed_measurement(&self, pose: &Pose) -> Pose {
         if self.of_camera { pose.inverse() } else { *pose }
     }
 }

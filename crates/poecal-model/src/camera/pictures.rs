@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Board, Camera, CommonError, Picture, PictureNumber, View};
+use super::{Board, Camera, CommonError, Picture, PictureNumber, SightingInput};
 
 /// Initial standard deviation of corners that state none, pixels.
 const USUAL_PX: f64 = 0.3;
@@ -48,9 +48,9 @@ impl Pictures {
 
     /// A picture with its lens and board; `None` if its camera or board is not among these.
     #[must_use]
-    pub fn view<'a>(&'a self, picture: &'a Picture) -> Option<View<'a>> {
+    pub fn view<'a>(&'a self, picture: &'a Picture) -> Option<SightingInput<'a>> {
         let (camera, board) = (self.cameras.get(picture.camera)?, self.boards.get(picture.board)?);
-        Some(View::new(picture, &camera.lens, board, self.sigma_px))
+        Some(SightingInput::new(picture, &camera.lens, board, self.sigma_px))
     }
 
     /// Index of the picture of a row.
@@ -60,7 +60,7 @@ impl Pictures {
     }
 
     /// Pictures of some rows, which have new numbers in this order.
-    pub(crate) fn only(&self, rows: &[u32]) -> Self {
+    pub(crate) fn select_rows(&self, rows: &[u32]) -> Self {
         let of = |(new, &row): (u32, &u32)| {
             let picture = self.all.get(self.of_row(row)?)?;
             Some(Picture { row: new, ..picture.clone() })

@@ -22,7 +22,7 @@ pub fn poses_of_rays(seen: &[(Vector3<f64>, Vector3<f64>)]) -> Vec<Pose> {
     let Some(quadric) = Quadric::new(seen) else { return Vec::new() };
     let mut found: Vec<(f64, Matrix3<f64>)> = Vec::new();
     for start in turns_of_a_cube() {
-        let Some((cost, turn)) = quadric.minimum(start, &found) else { continue };
+        let Some((cost, turn)) = quadric.find_minimum(start, &found) else { continue };
         if !found.iter().any(|(_, known)| rotation::log(&(known * turn.transpose())).norm() < SAME) {
             found.push((cost, turn));
         }
@@ -70,7 +70,11 @@ impl Quadric {
     }
 
     /// Minimum that is reached from a start, by Levenberg-Marquardt on the rotation; `None` if it nears one that is known.
-    fn minimum(&self, start: Matrix3<f64>, known: &[(f64, Matrix3<f64>)]) -> Option<(f64, Matrix3<f64>)> {
+    fn find_minimum(
+        &self,
+        start: Matrix3<f64>,
+        known: &[(f64, Matrix3<f64>)],
+    ) -> Option<(f64, Matrix3<f64>)> {
         let (mut turn, mut cost, mut damping) = (start, self.cost(&start), 1e-3);
         let scale = self.form.trace() / 9.0;
         for _ in 0..STEPS {

@@ -1,7 +1,7 @@
 //! All possible poses of a board in a picture.
 
 use super::pnp::poses_of_rays;
-use super::sighting::View;
+use super::sighting::SightingInput;
 use super::{middle, normal};
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -13,7 +13,7 @@ const WORSE: f64 = 20.0;
 /// Two poses that differ by less are one, m and rad.
 const SAME: f64 = 1e-4;
 
-impl View<'_> {
+impl SightingInput<'_> {
     /// Poses that fit the corners, the best first; a flat board that is far away or small has two.
     ///
     /// # Errors
@@ -36,9 +36,9 @@ impl View<'_> {
         for start in by_rays.into_iter().chain(mirrored) {
             let Some(sighting) = self.sighting(&start, true) else { continue };
             let pose = sighting.camera_from_board;
-            let cost = sighting.cost / sighting.freedom.max(1.0) + lost(&sighting.weights);
+            let cost = sighting.cost / sighting.freedom.max(1.0) + lost_weight_cost(&sighting.weights);
             let is_known = |(_, known): &(f64, Pose)| {
-                let (shift, turn) = known.apart(&pose);
+                let (shift, turn) = known.distance_and_angle(&pose);
                 shift < SAME && turn < SAME
             };
             if cost.is_finite() && !found.iter().any(is_known) {
@@ -72,6 +72,6 @@ impl View<'_> {
 }
 
 /// Cost of the corners without weight for a pose that others fit: as if each were at the bound.
-fn lost(weights: &[f64]) -> f64 {
+fn lost_weight_cost(weights: &[f64]) -> f64 {
     weights.iter().map(|weight| 36.0 * (1.0 - weight)).sum::<f64>() / weights.len().max(1) as f64
 }

@@ -41,7 +41,7 @@ impl Region {
     ///
     /// # Errors
     /// A message, if the region is not on the sensor.
-    pub fn applied(&self, lens: &Lens) -> Result<(Lens, Option<String>), String> {
+    pub fn apply_region(&self, lens: &Lens) -> Result<(Lens, Option<String>), String> {
         let Region { offset_px, size_px, binning } = *self;
         let is_part = size_px[0] > 0.0;
         let whole = lens.size_px.map(|it| it.map(f64::from));

@@ -6,8 +6,8 @@
 use nalgebra::{DMatrix, DVector, Matrix6xX};
 
 use super::{
-    Board, Lens, OwnInformation, Picture, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, View,
-    is_flat_sheet,
+    Board, Lens, Picture, PictureInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures,
+    SightingInput, is_flat_sheet,
 };
 use poecal_arm::lie::Pose;
 use poecal_numerics::linalg;
@@ -67,15 +67,15 @@ impl LensSearch {
         let held = if is_sheet { vec![lens_alone, lens_alone + 1] } else { Vec::new() };
         let poses = pictures.all.iter().map(|it| it.poses.first().copied()).collect::<Option<Vec<Pose>>>()?;
         let search = LensSearch { unknowns, count, held, shared: 1.0 };
-        let state = search.at(pictures, &poses, DVector::zeros(count));
+        let state = search.state_at(pictures, &poses, DVector::zeros(count));
         (count > 0).then_some((search, state))
     }
 
     /// State after a step of the numbers; each pose is the best one near that of this state, or near another one of `poses`.
     #[must_use]
-    pub fn stepped(&self, from: &LensState, poses: &[Pose], by: &DVector<f64>) -> LensState {
+    pub fn step_by(&self, from: &LensState, poses: &[Pose], by: &DVector<f64>) -> LensState {
         let by = by * (FARTHEST / by.amax().max(FARTHEST));
-        self.at(&from.pictures, poses, &from.step + by)
+        self.state_at(&from.pictures, poses, &from.step + by)
     }
 
     /// The search with the information of the pictures reduced by their variance ratio at a state. The shared error of a picture's corners, by a
@@ -87,14 +87,14 @@ impl LensSearch {
 
     /// Lens that the pictures determine by themselves; `None` if they do not.
     #[must_use]
-    pub fn alone(&self, start: &LensState) -> Option<LensState> {
+    pub fn lens_alone(&self, start: &LensState) -> Option<LensState> {
         let mut state = start.clone();
         for _ in 0..STEPS {
-            let by = linalg::solved(state.information.clone(), &state.pull)?;
+            let by = linalg::solve_symmetric(state.information.clone(), &state.pull)?;
             if by.dot(&state.pull) < LEAST {
                 break;
             }
-            state = self.stepped(&state, &state.poses, &by);
+            state = self.step_by(&state, &state.poses, &by);
         }
         state.step.iter().all(|it| it.is_finite()).then_some(state)
     }
@@ -105,10 +105,10 @@ impl LensSearch {
         self.unknowns.numbers(&state.step, deviations)
     }
 
-    fn at(&self, before: &Pictures, poses: &[Pose], step: DVector<f64>) -> LensState {
+    fn state_at(&self, before: &Pictures, poses: &[Pose], step: DVector<f64>) -> LensState {
         let mut pictures = before.clone();
         // The boards stay flat: for a flat one the second pose is known.
-        let (cameras, bent) = self.unknowns.at(&step);
+        let (cameras, bent) = self.unknowns.apply_step(&step);
         pictures.cameras = cameras;
         let sightings: Vec<_> = (pictures.all.iter().zip(poses))
             .map(|(picture, pose)| view(&pictures, &bent, picture)?.sighting(pose, true))
@@ -130,7 +130,7 @@ impl LensSearch {
         let states = pictures.all.iter().flat_map(|it| &it.corners).all(|corner| corner.sigma_px.is_some());
         let excess = squares / freedom;
         let excess = if states { excess.max(1.0) } else { excess.max(1e-6) };
-        let mut own = OwnInformation::none(self.count);
+        let mut own = PictureInformation::zero(self.count);
         let mut squared = DMatrix::zeros(self.count, self.count);
         let mut follow = Vec::with_capacity(found.len());
         for (picture, pose) in pictures.all.iter().zip(&found) {
@@ -163,9 +163,9 @@ impl LensSearch {
 }
 
 /// A picture with bent boards.
-fn view<'a>(pictures: &'a Pictures, bent: &'a [Board], picture: &'a Picture) -> Option<View<'a>> {
+fn view<'a>(pictures: &'a Pictures, bent: &'a [Board], picture: &'a Picture) -> Option<SightingInput<'a>> {
     let lens = &pictures.cameras.get(picture.camera)?.lens;
-    Some(View::new(picture, lens, bent.get(picture.board)?, pictures.sigma_px))
+    Some(SightingInput::new(picture, lens, bent.get(picture.board)?, pictures.sigma_px))
 }
 
 /// Ratio of the squared gradients of pictures to their expectation by the information; 1 if it exceeds 1 by no more than chance.

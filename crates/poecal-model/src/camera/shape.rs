@@ -5,18 +5,18 @@ use nalgebra::{Matrix3x4, Vector3};
 use super::board::{Board, dimensions, middle};
 
 /// Middle and half sides of a board in its plane.
-pub(crate) struct Shape {
+pub(crate) struct BoardExtent {
     middle: Vector3<f64>,
     pub(crate) half_m: [f64; 2],
 }
 
-impl Shape {
+impl BoardExtent {
     pub(crate) fn from_board(board: &Board) -> Self {
         let middle = middle(&board.points);
         let half = |axis: usize| {
             board.points.iter().map(|it| (it[axis] - middle[axis]).abs()).fold(f64::MIN_POSITIVE, f64::max)
         };
-        Shape { middle, half_m: [half(0), half(1)] }
+        BoardExtent { middle, half_m: [half(0), half(1)] }
     }
 
     /// Height of a parabola of sagitta 1 through the ends of the board at a point, along x and y.
@@ -25,7 +25,7 @@ impl Shape {
     }
 
     /// A point with changes of scale (shares) and sagittas of the bend (m) along x and y.
-    pub(crate) fn bent(&self, point: &Vector3<f64>, [x, y, bend_x, bend_y]: [f64; 4]) -> Vector3<f64> {
+    pub(crate) fn bend_point(&self, point: &Vector3<f64>, [x, y, bend_x, bend_y]: [f64; 4]) -> Vector3<f64> {
         let off = point - self.middle;
         let [along_x, along_y] = self.heights(point);
         let rise = bend_x * along_x + bend_y * along_y;

@@ -37,7 +37,7 @@ pub struct Sighting {
 
 /// Input of a sighting.
 #[derive(Clone, Copy)]
-pub struct View<'a> {
+pub struct SightingInput<'a> {
     /// The lens.
     pub lens: &'a Lens,
     /// The board.
@@ -49,7 +49,7 @@ pub struct View<'a> {
 }
 
 /// Residual of a corner with its derivatives, in standard deviations.
-pub(crate) struct Seen {
+pub(crate) struct CornerResidual {
     pub(crate) error: Vector2<f64>,
     pub(crate) by_motion: Matrix2x6<f64>,
     /// Derivative by a motion of the point in the camera's frame, and by the numbers of the lens.
@@ -57,23 +57,23 @@ pub(crate) struct Seen {
     pub(crate) by_lens: [[f64; LENS_NUMBERS]; 2],
 }
 
-impl<'a> View<'a> {
+impl<'a> SightingInput<'a> {
     /// View of a picture.
     #[must_use]
     pub fn new(picture: &'a Picture, lens: &'a Lens, board: &'a Board, sigma_px: f64) -> Self {
-        View { lens, board, corners: &picture.corners, sigma_px }
+        SightingInput { lens, board, corners: &picture.corners, sigma_px }
     }
 
     /// Predicted pixel of a corner.
     #[must_use]
-    pub fn predicted(&self, corner: &Corner, camera_from_board: &Pose) -> Option<Vector2<f64>> {
+    pub fn project_corner(&self, corner: &Corner, camera_from_board: &Pose) -> Option<Vector2<f64>> {
         self.lens.pixel(&camera_from_board.act(self.board.points.get(corner.point as usize)?))
     }
 
     /// Measured minus predicted pixel of each corner; `None` if it would not be in the picture.
     #[must_use]
     pub fn errors(&self, camera_from_board: &Pose) -> Vec<Option<Vector2<f64>>> {
-        let error = |corner: &Corner| Some(corner.pixel - self.predicted(corner, camera_from_board)?);
+        let error = |corner: &Corner| Some(corner.pixel - self.project_corner(corner, camera_from_board)?);
         self.corners.iter().map(error).collect()
     }
 
@@ -98,7 +98,7 @@ impl<'a> View<'a> {
     }
 
     /// Residual and derivative of a corner, in standard deviations; `q = R P + p` moves by `δ + ω × R P`.
-    pub(crate) fn seen(&self, corner: &Corner, pose: &Pose) -> Option<Seen> {
+    pub(crate) fn corner_residual(&self, corner: &Corner, pose: &Pose) -> Option<CornerResidual> {
         let point = self.board.points.get(corner.point as usize)?;
         let arm = pose.rotation * point;
         let found = self.lens.projection(&(arm + pose.translation))?;
@@ -106,7 +106,7 @@ impl<'a> View<'a> {
         let mut by_motion = Matrix2x6::zeros();
         by_motion.fixed_view_mut::<2, 3>(0, 0).copy_from(&(found.by_point * weight));
         by_motion.fixed_view_mut::<2, 3>(0, 3).copy_from(&(found.by_point * hat(&arm) * -weight));
-        Some(Seen {
+        Some(CornerResidual {
             error: (corner.pixel - found.pixel) * weight,
             by_motion,
             by_point: found.by_point * weight,
@@ -138,7 +138,7 @@ impl<'a> View<'a> {
     fn sums(&self, pose: &Pose, weights: &[f64]) -> (Matrix6<f64>, Vector6<f64>, f64) {
         let mut sums = (Matrix6::zeros(), Vector6::zeros(), 0.0);
         for (corner, weight) in self.corners.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-            let Some(Seen { error, by_motion, .. }) = self.seen(corner, pose) else {
+            let Some(CornerResidual { error, by_motion, .. }) = self.corner_residual(corner, pose) else {
                 // A corner that the camera could not see costs more than any that it sees.
                 sums.2 += weight * UNSEEN * UNSEEN;
                 continue;
@@ -172,7 +172,7 @@ impl<'a> View<'a> {
         let mut pose = *start;
         let mut weights = vec![1.0; self.corners.len()];
         for _ in 0..if robust { ROUNDS } else { 1 } {
-            pose = self.refined(pose, &weights)?;
+            pose = self.refine_pose(pose, &weights)?;
             if !robust {
                 break;
             }
@@ -190,7 +190,7 @@ impl<'a> View<'a> {
     /// Sighting near a pose, to first order, although the best pose of the corners is another one: a flat board that is tilted in the
     /// opposite direction looks almost the same.
     #[must_use]
-    pub fn near(&self, pose: &Pose) -> Option<Sighting> {
+    pub fn sighting_near(&self, pose: &Pose) -> Option<Sighting> {
         let weights = self.weights(pose);
         let (information, gradient, _) = self.sums(pose, &weights);
         let mut step = linalg::cholesky_6(information)?.solve(&gradient);
@@ -198,7 +198,7 @@ impl<'a> View<'a> {
         if turn > MOST_TURN {
             step *= MOST_TURN / turn;
         }
-        let next = moved(pose, &step);
+        let next = move_pose(pose, &step);
         let (_, _, cost) = self.sums(&next, &weights);
         Some(self.sighting_at(next, information, cost, weights))
     }
@@ -220,7 +220,7 @@ impl<'a> View<'a> {
     }
 
     /// Levenberg-Marquardt on the pose.
-    fn refined(&self, start: Pose, weights: &[f64]) -> Option<Pose> {
+    fn refine_pose(&self, start: Pose, weights: &[f64]) -> Option<Pose> {
         let mut pose = start;
         let mut now = self.sums(&pose, weights);
         let mut damping = 1e-6;
@@ -233,7 +233,7 @@ impl<'a> View<'a> {
             }
             let step = linalg::cholesky_6(damped).map(|factor| factor.solve(&gradient));
             let Some(step) = step.filter(|step| step.iter().all(|it| it.is_finite())) else { break };
-            let next = moved(&pose, &step);
+            let next = move_pose(&pose, &step);
             let found = self.sums(&next, weights);
             if found.2 < cost {
                 (pose, now, damping) = (next, found, damping * 0.1);
@@ -262,7 +262,7 @@ const ROUNDS: usize = 15;
 
 /// A pose after a shift of its origin and a rotation about it, in the axes of its parent frame.
 #[must_use]
-pub fn moved(pose: &Pose, step: &Vector6<f64>) -> Pose {
+pub fn move_pose(pose: &Pose, step: &Vector6<f64>) -> Pose {
     let turn: Matrix3<f64> = rotation::exp(&Vector3::new(step[3], step[4], step[5]));
     Pose::new(turn * pose.rotation, pose.translation + Vector3::new(step[0], step[1], step[2]))
 }

@@ -12,14 +12,14 @@ const ENDS: [f64; 2] = [0.02, 0.98];
 
 /// Poses of the boards that a camera saw, and positions of their corners in its image.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Views {
+pub struct CameraViews {
     /// Poses of each board in the camera's frame.
     pub poses: Vec<Vec<Pose>>,
     /// Pixels of all corners.
     pub pixels: Vec<Vector2<f64>>,
 }
 
-impl Views {
+impl CameraViews {
     /// Largest angle between the normal of a board (its z) and the optical axis, rad; zero without boards.
     #[must_use]
     pub fn largest_tilt(&self) -> f64 {
@@ -74,7 +74,7 @@ mod tests {
         let fixed = about(Vector3::new(0.2, -0.5, 0.3), 1.0);
         let axis = Vector3::new(0.6, 0.0, 0.8);
         let poses: Vec<Pose> = (0..20).map(|k| about(axis, 0.1 * f64::from(k)) * fixed).collect();
-        let [most, other] = Views { poses: vec![poses.clone()], ..Views::default() }.turns();
+        let [most, other] = CameraViews { poses: vec![poses.clone()], ..CameraViews::default() }.turns();
         // Differences of evenly spaced angles: √(2 · variance), over pairs that are two pictures.
         let expected = 0.1 * (2.0 * (20.0_f64 * 20.0 - 1.0) / 12.0 * 20.0 / 19.0).sqrt();
         println!("turns {most:.6} of {expected:.6}, {other:.1e} about others");
@@ -82,7 +82,7 @@ mod tests {
         assert!((most - expected).abs() < 1e-12 && other < 1e-7);
         let mut both = poses;
         both.push(about(Vector3::x(), 0.7) * fixed);
-        assert!(Views { poses: vec![both], ..Views::default() }.turns()[1] > 0.1);
-        assert_eq!(Views::default().turns(), [0.0, 0.0]);
+        assert!(CameraViews { poses: vec![both], ..CameraViews::default() }.turns()[1] > 0.1);
+        assert_eq!(CameraViews::default().turns(), [0.0, 0.0]);
     }
 }

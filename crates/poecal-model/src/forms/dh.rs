@@ -199,7 +199,7 @@ impl DhEntry {
         if convention == DhConvention::Hayati && turns && (PARALLEL..NEARLY_PARALLEL).contains(&sine) {
             self.row = RowKind::Hayati;
             let through = point - axis * (point.z / axis.z);
-            (self.a_m, self.theta_rad) = polar(&through);
+            (self.a_m, self.theta_rad) = to_polar(&through);
             let seen = rotation::about(2, -self.theta_rad) * axis;
             self.beta_rad = seen.x.clamp(-1.0, 1.0).asin();
             self.alpha_rad = (-seen.y).atan2(seen.z);
@@ -209,7 +209,7 @@ impl DhEntry {
         match (turns, &normal) {
             // The two meet in the point.
             (false, _) => self.d_m = point.z,
-            (true, None) => (self.a_m, self.theta_rad) = polar(point),
+            (true, None) => (self.a_m, self.theta_rad) = to_polar(point),
             (true, Some(normal)) => {
                 // Feet of the common normal.
                 let foot = |other: &Vector3<f64>| point.cross(other).dot(&across) / (sine * sine);
@@ -229,7 +229,7 @@ impl DhEntry {
 }
 
 /// Distance from z, and the angle about it.
-fn polar(point: &Vector3<f64>) -> (f64, f64) {
+fn to_polar(point: &Vector3<f64>) -> (f64, f64) {
     let distance = point.x.hypot(point.y);
     if distance < PARALLEL { (0.0, 0.0) } else { (distance, point.y.atan2(point.x)) }
 }

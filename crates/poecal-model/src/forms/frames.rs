@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::robot::{Joint, JointKind, Limits, Robot};
+use crate::robot::{Joint, JointKind, JointLimits, Robot};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -90,7 +90,8 @@ impl AxisFrames {
             } else {
                 // The new zero is the old reading's.
                 let by = joint.reading.offset;
-                own.limits = joint.limits.map(|it| Limits { lower: it.lower - by, upper: it.upper - by });
+                own.limits =
+                    joint.limits.map(|it| JointLimits { lower: it.lower - by, upper: it.upper - by });
                 own.reading.name.clone_from(&joint.reading.name);
             }
             joints.push(own);

@@ -3,7 +3,7 @@
 use super::Measurement;
 
 /// A form of a measurement in files. Standard deviations are in columns `sigma_` and the name of a quantity.
-pub struct Columns {
+pub struct MeasurementColumns {
     /// Columns of its numbers, in the unit of the function's first quantity.
     pub numbers: &'static [&'static str],
     /// Columns that name the station of the measurement; two of them together.
@@ -11,7 +11,7 @@ pub struct Columns {
     /// Column of a word that distinguishes forms, with the word of this one.
     pub word: Option<(&'static str, &'static str)>,
     /// Source of its numbers.
-    pub from: From,
+    pub from: FormCriterion,
     /// Measurement from its numbers, metres and radians; zero if none is in the row.
     pub of: fn(&[f64]) -> Measurement,
     /// Numbers of a measurement in this form, `None` if it has another one; a number that is zero may be omitted if names alone define a row.
@@ -20,7 +20,7 @@ pub struct Columns {
 
 /// Condition of a row of a form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum From {
+pub enum FormCriterion {
     /// All of its numbers are there; if they are above 0, zero is a beam break.
     Numbers {
         /// True if they are.

@@ -26,13 +26,13 @@ impl Dataset {
 
     /// Configurations of two rows or more among these, groups and their rows in the order of the data. Readings of one configuration differ
     /// by no more than 0.001 rad or 1 mm.
-    pub fn grouped(&self, rows: &[u32]) -> Vec<Vec<u32>> {
-        if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME, 2, |_| 0) }
+    pub fn group_configurations(&self, rows: &[u32]) -> Vec<Vec<u32>> {
+        if rows.len() > MANY { self.group_repeated(rows) } else { self.group_similar(rows, SAME, 2, |_| 0) }
     }
 
-    /// These rows by configuration, as [`Dataset::grouped`], with configurations of one row. For some hundred thousand rows at most.
+    /// These rows by configuration, as [`Dataset::group_configurations`], with configurations of one row. For some hundred thousand rows at most.
     pub fn configurations(&self, rows: &[u32]) -> Vec<Vec<u32>> {
-        let mut groups = self.grouped(rows);
+        let mut groups = self.group_configurations(rows);
         let mut grouped: Vec<u32> = groups.iter().flatten().copied().collect();
         grouped.sort_unstable();
         groups.extend(rows.iter().filter(|row| grouped.binary_search(row).is_err()).map(|&row| vec![row]));
@@ -42,7 +42,7 @@ impl Dataset {
 
     /// Groups of `least` rows or more of one class among these whose readings differ from those of the group's first row by no more than
     /// `same`.
-    pub fn alike<C: Copy + Ord + Send + Sync>(
+    pub fn group_similar<C: Copy + Ord + Send + Sync>(
         &self,
         rows: &[u32],
         same: f64,
@@ -101,7 +101,7 @@ impl Dataset {
     }
 
     /// Groups of two rows or more among these with identical readings, groups and their rows in the order of the data.
-    pub fn repeated(&self, rows: &[u32]) -> Vec<Vec<u32>> {
+    pub fn group_repeated(&self, rows: &[u32]) -> Vec<Vec<u32>> {
         let bits = |row: u32| self.of_joints(row).iter().map(|value| value.to_bits());
         // A hash: only rows with equal hashes are compared.
         let mixed =
@@ -157,7 +157,7 @@ mod tests {
             let seen = Measurement::point(Vector3::zeros());
             data.push(&readings, None, seen).unwrap();
         }
-        assert_eq!(data.repeated(&data.all_rows()), [vec![0, 4], vec![1, 3, 6]]);
-        assert_eq!(data.repeated(&[6, 5, 1, 0]), [vec![1, 6]]);
+        assert_eq!(data.group_repeated(&data.all_rows()), [vec![0, 4], vec![1, 3, 6]]);
+        assert_eq!(data.group_repeated(&[6, 5, 1, 0]), [vec![1, 6]]);
     }
 }

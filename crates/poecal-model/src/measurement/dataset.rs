@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{KnownLength, Measurement, Moving, NoiseShape, Observation, PoseResidual, Quantity};
+use super::{KnownLength, Measurement, MovingRows, NoiseShape, Observation, PoseResidual, Quantity};
 use crate::camera::Pictures;
 use crate::robot::Controller;
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -45,7 +45,7 @@ pub struct Dataset {
     pub noise_shapes: Vec<NoiseShape>,
     /// The rows that were measured in motion.
     #[serde(default)]
-    pub moving: Moving,
+    pub moving: MovingRows,
     /// The pictures among the rows.
     #[serde(default)]
     pub pictures: Pictures,
@@ -117,7 +117,7 @@ impl Dataset {
         let mut made = Dataset {
             readings: Vec::new(),
             noise_shapes: Vec::new(),
-            moving: Moving::default(),
+            moving: MovingRows::default(),
             pictures: Pictures::default(),
             observations: Vec::new(),
             ids: Vec::new(),

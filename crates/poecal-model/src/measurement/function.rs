@@ -9,7 +9,7 @@ use poecal_arm::lie::{Freedom, Pose};
 
 /// Numbers of a measurement that a function needs, metres and radians; zero if it needs fewer. A pose needs all: its position, then the
 /// columns of its rotation.
-pub type Values = [f64; 12];
+pub type MeasuredValues = [f64; 12];
 
 /// Change of a predicted number by a motion of the target: by its translation, then by its rotation about its own origin, device axes.
 pub type Sensitivity = [f64; 6];
@@ -17,7 +17,7 @@ pub type Sensitivity = [f64; 6];
 /// A measured function: residual `e = measured ⊖ predicted` and sensitivity S of the *prediction*, with further properties. The prediction
 /// moves by `S · twist` under a target twist (theory.md §4 (14) to (17)); neither is whitened. Its row in [`FUNCTIONS`](super::FUNCTIONS)
 /// adds columns of files and simulated sessions; all other code uses these two.
-pub struct Function {
+pub struct MeasurementFunction {
     /// Name of a single measurement.
     pub name: &'static str,
     /// Name of several measurements.
@@ -25,11 +25,11 @@ pub struct Function {
     /// The quantities of its numbers.
     pub quantities: &'static [Quantity],
     /// The numbers of a measurement.
-    pub channels: fn(&Values) -> &'static Channels,
+    pub channels: fn(&MeasuredValues) -> &'static Channels,
     /// Writes the residual for the predicted `device_from_target`, metres and radians.
-    pub residual: fn(&Values, &Pose, &mut [f64]),
+    pub residual: fn(&MeasuredValues, &Pose, &mut [f64]),
     /// Writes the sensitivity of each predicted number.
-    pub sensitivity: fn(&Values, &Pose, &mut [Sensitivity]),
+    pub sensitivity: fn(&MeasuredValues, &Pose, &mut [Sensitivity]),
     /// True if the second derivative of `½ |e|²` along a target twist is that of the target's position and rotation, under the whitened
     /// residual as force and torque. It holds to first order in the residual (theory.md §6 (31a)). Without it the solver does not use the
     /// full Hessian.
@@ -37,7 +37,7 @@ pub struct Function {
     /// Number of the values, the first ones, that are lengths that were read.
     pub lengths: usize,
     /// The same measurement with its angles times a factor, if angles were read.
-    pub with_angles_times: Option<fn(&Values, f64) -> Values>,
+    pub with_angles_times: Option<fn(&MeasuredValues, f64) -> MeasuredValues>,
     /// Form of the measurement in kernels.
     pub kernel: Kernel,
     /// Kind of the device.
@@ -45,16 +45,16 @@ pub struct Function {
     /// True if the zero of the readings is an unknown of the device.
     pub zero_is_unknown: bool,
     /// Motions of the device that a measurement determines.
-    pub device_freedom: fn(&Values) -> Freedom,
+    pub device_freedom: fn(&MeasuredValues) -> Freedom,
     /// Motions of the target that a measurement determines.
-    pub target_freedom: fn(&Values) -> Freedom,
+    pub target_freedom: fn(&MeasuredValues) -> Freedom,
     /// Information of a single measurement, from which a fit starts in closed form.
-    pub clue: fn(&Values) -> Clue,
+    pub clue: fn(&MeasuredValues) -> InitialGuess,
 }
 
-impl Function {
+impl MeasurementFunction {
     /// Usual properties: the whole frame of device and target is measured, kernels take the numbers unchanged, and there is no clue.
-    pub(crate) const USUAL: Function = Function {
+    pub(crate) const USUAL: MeasurementFunction = MeasurementFunction {
         name: "",
         plural: "",
         quantities: &[],
@@ -69,7 +69,7 @@ impl Function {
         zero_is_unknown: false,
         device_freedom: |_| Freedom::FRAME,
         target_freedom: |_| Freedom::PLACE,
-        clue: |_| Clue::None,
+        clue: |_| InitialGuess::None,
     };
 
     /// True if it depends on the target's orientation, for some numbers at least.
@@ -80,20 +80,20 @@ impl Function {
 
     /// Quantity of its first number.
     #[must_use]
-    pub fn leading(&self) -> Quantity {
+    pub fn leading_quantity(&self) -> Quantity {
         self.quantities.first().copied().unwrap_or(Quantity::Position)
     }
 }
 
 static NO_CHANNELS: Channels = Channels::new(&[]);
 
-impl PartialEq for Function {
+impl PartialEq for MeasurementFunction {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
 }
 
-impl fmt::Debug for Function {
+impl fmt::Debug for MeasurementFunction {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.name)
     }
@@ -163,7 +163,7 @@ impl Device {
 /// Information of a single measurement on its target and its device: for starts in closed form, and for all code that moves or plots
 /// measured positions and orientations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Clue {
+pub enum InitialGuess {
     /// The target's frame in the device's.
     Frame(Pose),
     /// Components of the target's position in the device's frame, metres; `None` for those that were not measured.

@@ -69,13 +69,13 @@ impl InstrumentNoise {
             }
             let measurement = &observation.measurement;
             if measurement.is_part_of_position() {
-                return Err(incomplete(data, row, measurement));
+                return Err(incomplete_error(data, row, measurement));
             }
             let Some(place) = measurement.position() else { continue };
             let distance = place.norm();
             let across = self.everywhere_m.hypot(self.per_metre * distance);
             let sight = place.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::z);
-            data.state_noise(row, NoiseShape::across(&sight, self.everywhere_m, across));
+            data.state_noise(row, NoiseShape::from_sight(&sight, self.everywhere_m, across));
         }
         Ok(())
     }
@@ -91,7 +91,7 @@ impl InstrumentNoise {
 }
 
 /// Error of a row without a whole position, whose distance is not known.
-fn incomplete(data: &Dataset, row: usize, seen: &Measurement) -> Error {
+fn incomplete_error(data: &Dataset, row: usize, seen: &Measurement) -> Error {
     let missing =
         ["x", "y", "z"].into_iter().zip(seen.position_components()).find(|(_, value)| value.is_none());
     let message = format!(

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Channels, Clue, Device, Function, Quantity, Sensitivity, Values};
+use super::{Channels, Device, InitialGuess, MeasuredValues, MeasurementFunction, Quantity, Sensitivity};
 use poecal_arm::lie::{Freedom, Pose, rotation};
 
 /// One measurement of a target in the measuring device's frame: a function and its numbers. Its prediction depends on the predicted pose of
@@ -19,13 +19,13 @@ use poecal_arm::lie::{Freedom, Pose, rotation};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    function: &'static Function,
-    values: Values,
+    function: &'static MeasurementFunction,
+    values: MeasuredValues,
 }
 
 impl Measurement {
     /// Measurement of a function, with its first numbers.
-    pub(crate) fn new(function: &'static Function, first: &[f64]) -> Self {
+    pub(crate) fn new(function: &'static MeasurementFunction, first: &[f64]) -> Self {
         let mut values = [0.0; 12];
         values.iter_mut().zip(first).for_each(|(value, first)| *value = *first);
         Measurement { function, values }
@@ -34,25 +34,25 @@ impl Measurement {
     /// Function that was measured.
     #[must_use]
     #[inline]
-    pub fn function(&self) -> &'static Function {
+    pub fn function(&self) -> &'static MeasurementFunction {
         self.function
     }
 
     /// Numbers.
     #[must_use]
     #[inline]
-    pub fn values(&self) -> &Values {
+    pub fn values(&self) -> &MeasuredValues {
         &self.values
     }
 
     /// Numbers, mutable.
     #[inline]
-    pub fn values_mut(&mut self) -> &mut Values {
+    pub fn values_mut(&mut self) -> &mut MeasuredValues {
         &mut self.values
     }
 
     /// The same numbers of another function.
-    pub(crate) fn with_function(self, function: &'static Function) -> Self {
+    pub(crate) fn with_function(self, function: &'static MeasurementFunction) -> Self {
         Measurement { function, ..self }
     }
 
@@ -113,7 +113,7 @@ impl Measurement {
     /// Information of this measurement alone.
     #[must_use]
     #[inline]
-    pub fn clue(&self) -> Clue {
+    pub fn clue(&self) -> InitialGuess {
         (self.function.clue)(&self.values)
     }
 
@@ -121,9 +121,13 @@ impl Measurement {
     #[must_use]
     pub fn position_components(&self) -> [Option<f64>; 3] {
         match self.clue() {
-            Clue::Frame(pose) => [0, 1, 2].map(|k| Some(pose.translation[k])),
-            Clue::Place(components) => components,
-            Clue::Range(_) | Clue::Middle | Clue::Height { .. } | Clue::Up(_) | Clue::None => [None; 3],
+            InitialGuess::Frame(pose) => [0, 1, 2].map(|k| Some(pose.translation[k])),
+            InitialGuess::Place(components) => components,
+            InitialGuess::Range(_)
+            | InitialGuess::Middle
+            | InitialGuess::Height { .. }
+            | InitialGuess::Up(_)
+            | InitialGuess::None => [None; 3],
         }
     }
 
@@ -140,13 +144,13 @@ impl Measurement {
     #[must_use]
     pub fn frame(&self) -> Option<Pose> {
         match self.clue() {
-            Clue::Frame(pose) => Some(pose),
-            Clue::Place(_)
-            | Clue::Range(_)
-            | Clue::Middle
-            | Clue::Height { .. }
-            | Clue::Up(_)
-            | Clue::None => None,
+            InitialGuess::Frame(pose) => Some(pose),
+            InitialGuess::Place(_)
+            | InitialGuess::Range(_)
+            | InitialGuess::Middle
+            | InitialGuess::Height { .. }
+            | InitialGuess::Up(_)
+            | InitialGuess::None => None,
         }
     }
 
@@ -166,13 +170,13 @@ impl Measurement {
     #[must_use]
     pub fn range(&self) -> Option<f64> {
         match self.clue() {
-            Clue::Range(distance) => Some(distance),
-            Clue::Frame(_)
-            | Clue::Place(_)
-            | Clue::Middle
-            | Clue::Height { .. }
-            | Clue::Up(_)
-            | Clue::None => None,
+            InitialGuess::Range(distance) => Some(distance),
+            InitialGuess::Frame(_)
+            | InitialGuess::Place(_)
+            | InitialGuess::Middle
+            | InitialGuess::Height { .. }
+            | InitialGuess::Up(_)
+            | InitialGuess::None => None,
         }
     }
 
@@ -191,7 +195,7 @@ impl Measurement {
     /// True if it has a length of this quantity, which its first numbers are of.
     #[must_use]
     pub fn has_length_of(&self, quantity: Quantity) -> bool {
-        self.function.leading() == quantity && self.has_length()
+        self.function.leading_quantity() == quantity && self.has_length()
     }
 
     /// Lengths that were read, mutable.
@@ -215,16 +219,20 @@ impl Measurement {
 
     /// Difference of two measurements of the same numbers: metres, and radians of orientations. `None` if their functions differ.
     #[must_use]
-    pub fn apart(&self, other: &Measurement) -> Option<(f64, f64)> {
+    pub fn distance_and_angle(&self, other: &Measurement) -> Option<(f64, f64)> {
         let angle = |a: Vector3<f64>, b: Vector3<f64>| a.cross(&b).norm().atan2(a.dot(&b));
         let metres = || {
             let both = self.lengths().iter().zip(other.lengths());
             Vector3::from_iterator(both.map(|(a, b)| a - b).chain([0.0; 3])).norm()
         };
         let turned = match (self.clue(), other.clue()) {
-            (Clue::Frame(a), Clue::Frame(b)) => rotation::log(&(a.rotation * b.rotation.transpose())).norm(),
-            (Clue::Up(a), Clue::Up(b))
-            | (Clue::Height { up: Some(a), .. }, Clue::Height { up: Some(b), .. }) => angle(a, b),
+            (InitialGuess::Frame(a), InitialGuess::Frame(b)) => {
+                rotation::log(&(a.rotation * b.rotation.transpose())).norm()
+            }
+            (InitialGuess::Up(a), InitialGuess::Up(b))
+            | (InitialGuess::Height { up: Some(a), .. }, InitialGuess::Height { up: Some(b), .. }) => {
+                angle(a, b)
+            }
             _ => 0.0,
         };
         let are_places = self.position().is_some() && other.position().is_some();

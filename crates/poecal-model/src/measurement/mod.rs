@@ -1,7 +1,7 @@
 //! Measurements by an external device: the table of measured functions, and the rows of a session.
 //!
 //! A row is a target, fixed to some body, that an instrument, fixed to some body, measures in a configuration, or in two. A measurement is a function
-//! and its numbers. A `Function` (`function.rs`) has residual and sensitivity of the predicted pose of its target. It also has the motions of device
+//! and its numbers. A `MeasurementFunction` (`function.rs`) has residual and sensitivity of the predicted pose of its target. It also has the motions of device
 //! and target that it determines, its form in kernels, and the clue from which a fit starts in closed form. Its row in [`FUNCTIONS`] (`functions/`, a
 //! file a sensor) adds its columns in files and the sessions that simulate and plan it. Files, words, templates, starts, kernels, diagnosis and
 //! report use the row; none of them has a list of sensors.
@@ -17,32 +17,32 @@ mod dataset;
 mod function;
 mod functions;
 mod instrument_noise;
-mod joined;
 mod known_length;
 mod measured;
-mod moving;
+mod moving_rows;
 mod noise_shape;
+mod observability;
 mod observation;
 mod other_pose;
 mod pictures;
 mod quantity;
+mod row_selection;
 mod serial;
 mod session;
-mod shown;
 
 pub use channels::{Channel, Channels, NUMBERS};
-pub use columns::{Columns, From};
+pub use columns::{FormCriterion, MeasurementColumns};
 pub use configurations::MANY as MANY_ROWS;
 pub use dataset::Dataset;
-pub use function::{Clue, Device, Function, Kernel, Sensitivity, Values};
-pub use functions::{FUNCTIONS, Row, measuring};
+pub use function::{Device, InitialGuess, Kernel, MeasuredValues, MeasurementFunction, Sensitivity};
+pub use functions::{FUNCTIONS, FunctionRow, find_by_quantities};
 pub use instrument_noise::InstrumentNoise;
 pub use known_length::KnownLength;
 pub use measured::Measurement;
-pub use moving::{Clock, Moving};
+pub use moving_rows::{Clock, MovingRows};
 pub use noise_shape::NoiseShape;
-pub use observation::{Observation, Set, Source};
-pub use other_pose::{PoseResidual, Written};
+pub use observation::{Observation, RowLocation, Set};
+pub use other_pose::{FormulatedMeasurement, PoseResidual};
 pub use pictures::{SightingAbout, deviation, picture_whitening};
-pub use quantity::{ByQuantity, Measured, Noise, Quantity, Stated};
-pub use session::{Draw, Drawn, Kind, Session, Stands};
+pub use quantity::{ByQuantity, MeasuredQuantities, Noise, Quantity, StatedDeviations};
+pub use session::{MeasurementOrigin, RandomDraws, SessionKind, SessionTraits, StationLayout};

@@ -31,7 +31,7 @@ impl NoiseShape {
     /// Shape of a standard deviation along a unit vector and another one across it, metres: the σ of both, with their geometric mean, and
     /// the shape.
     #[must_use]
-    pub fn across(sight: &Vector3<f64>, along_m: f64, across_m: f64) -> (f64, NoiseShape) {
+    pub fn from_sight(sight: &Vector3<f64>, along_m: f64, across_m: f64) -> (f64, NoiseShape) {
         let mean = (along_m * across_m * across_m).cbrt();
         let along = sight * sight.transpose();
         let shape = along * (mean / along_m) + (Matrix3::identity() - along) * (mean / across_m);
@@ -64,7 +64,7 @@ impl NoiseShape {
 
     /// A vector whose noise has this shape, transformed to equal noise in all directions.
     #[must_use]
-    pub fn whitened(&self, vector: &Vector3<f64>) -> Vector3<f64> {
+    pub fn whiten_vector(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         self.0.fixed_view::<3, 3>(0, 0) * vector
     }
 

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ByQuantity, Measurement, Noise, Stated};
+use super::{ByQuantity, Measurement, Noise, StatedDeviations};
 
 /// Set of a row: training or held out.
 ///
 /// ```
-/// # use poecal_model::measurement::{Kind, Set};
+/// # use poecal_model::measurement::{SessionKind, Set};
 /// # use poecal_model::simulate::{Simulation, elbow};
-/// let mut data = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POSE)?.data;
+/// let mut data = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POSE)?.data;
 /// for (row, observation) in data.observations.iter_mut().enumerate() {
 ///     observation.set = Some(if row < 30 { Set::Fit } else { Set::HeldOut });
 /// }
@@ -25,7 +25,7 @@ pub enum Set {
 
 /// Source of a row: index into [`Dataset::files`](crate::measurement::Dataset::files) and line (from 1; 0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Source {
+pub struct RowLocation {
     /// Index into [`Dataset::files`](crate::measurement::Dataset::files).
     pub file: u32,
     /// Line in that file, from 1.
@@ -57,19 +57,19 @@ pub struct Observation {
     /// The measurement.
     pub measurement: Measurement,
     /// Standard deviations of each component, metres or radians, if the row states them.
-    pub stated: Stated,
+    pub stated: StatedDeviations,
     /// Shape of the noise of its position, if it is not the same in all directions. It is an index into
     /// [`Dataset::noise_shapes`](crate::measurement::Dataset::noise_shapes).
     #[serde(default)]
     pub noise_shape: Option<u32>,
     /// Index of the row among those that were measured in motion: into the times of
-    /// [`Dataset::moving`](crate::measurement::Dataset::moving).
+    /// [`Dataset::moving_rows`](crate::measurement::Dataset::moving).
     #[serde(default)]
     pub moving: Option<u32>,
     /// Set of the row, if it states it.
     pub set: Option<Set>,
     /// File and line.
-    pub source: Source,
+    pub source: RowLocation,
 }
 
 impl Observation {
@@ -81,11 +81,11 @@ impl Observation {
             station: 0,
             from: None,
             measurement,
-            stated: Stated::default(),
+            stated: StatedDeviations::default(),
             noise_shape: None,
             moving: None,
             set: None,
-            source: Source::default(),
+            source: RowLocation::default(),
         }
     }
 

@@ -25,17 +25,20 @@ impl PartialEq for dyn PoseResidual {
 }
 
 /// A measurement with the formulation of its residual.
-pub struct Written<'a> {
+pub struct FormulatedMeasurement<'a> {
     /// The measurement.
     pub measurement: &'a Measurement,
     /// Another formulation than that of its function, of a frame.
     other: Option<(Pose, &'static dyn PoseResidual)>,
 }
 
-impl<'a> Written<'a> {
+impl<'a> FormulatedMeasurement<'a> {
     /// A measurement with the residual of its function, or another one of a frame.
     pub fn new(measurement: &'a Measurement, other: Option<&'static dyn PoseResidual>) -> Self {
-        Written { measurement, other: other.and_then(|other| Some((measurement.frame()?, other))) }
+        FormulatedMeasurement {
+            measurement,
+            other: other.and_then(|other| Some((measurement.frame()?, other))),
+        }
     }
 
     /// True if it is that of its function.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::{Dataset, Measurement, Noise, NoiseShape, Observation, Quantity, Set, Source};
+use super::{Dataset, Measurement, Noise, NoiseShape, Observation, Quantity, RowLocation, Set};
 use crate::camera::{Centre, CommonError, Picture, Sighting, motion_by_inverse};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::distributions::median;
@@ -25,7 +25,7 @@ impl Dataset {
         &mut self,
         readings: &[f64],
         picture: Picture,
-        (set, source): (Option<Set>, Source),
+        (set, source): (Option<Set>, RowLocation),
     ) -> Result<std::result::Result<(), String>> {
         let row = u32::try_from(self.len()).unwrap_or(u32::MAX);
         let mut picture = Picture { row, ..picture };
@@ -81,7 +81,7 @@ impl Dataset {
     fn sighting(&self, at: usize) -> Option<Sighting> {
         let picture = self.pictures.all.get(at)?;
         let measured = self.observations.get(picture.row as usize)?.measurement.pose();
-        self.pictures.view(picture)?.sighting(&picture.directed(&measured), true)
+        self.pictures.view(picture)?.sighting(&picture.directed_measurement(&measured), true)
     }
 
     fn state_pictures(&mut self) {
@@ -120,7 +120,7 @@ impl Dataset {
     /// Makes the row of a picture the pose of a sighting, with its noise.
     pub fn state_picture(&mut self, at: usize, sighting: &Sighting) {
         let Some(picture) = self.pictures.all.get_mut(at) else { return };
-        let pose = picture.directed(&sighting.camera_from_board);
+        let pose = picture.directed_measurement(&sighting.camera_from_board);
         picture
             .corners
             .iter_mut()

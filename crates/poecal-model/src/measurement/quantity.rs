@@ -35,9 +35,9 @@ macro_rules! quantities {
             pub const ALL: [$Quantity; [$($name),+].len()] = [$($Quantity::$variant),+];
 
             /// Properties of a quantity: the only place that distinguishes quantities.
-            const fn entry(self) -> Entry {
+            const fn entry(self) -> QuantityRow {
                 match self {
-                    $($Quantity::$variant => Entry {
+                    $($Quantity::$variant => QuantityRow {
                         name: $name,
                         key: key!($name, $unit),
                         unit: Unit::$unit,
@@ -84,7 +84,7 @@ pub enum Quantity {
 }
 
 /// Properties of a quantity.
-struct Entry {
+struct QuantityRow {
     name: &'static str,
     key: &'static str,
     unit: Unit,
@@ -173,7 +173,7 @@ impl<T> ByQuantity<T> {
 
     /// The same values with another one of one quantity.
     #[must_use]
-    pub fn with(mut self, quantity: Quantity, value: T) -> Self {
+    pub fn with_value(mut self, quantity: Quantity, value: T) -> Self {
         self[quantity] = value;
         self
     }
@@ -248,12 +248,12 @@ impl Noise {
 /// A positive number for each quantity for which it is stated. It is kept for every row, and therefore small.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "ByQuantity<Option<f64>>", into = "ByQuantity<Option<f64>>")]
-pub struct Stated {
+pub struct StatedDeviations {
     /// Zero if nothing is stated.
     values: ByQuantity<f64>,
 }
 
-impl Stated {
+impl StatedDeviations {
     /// The number of a quantity.
     #[must_use]
     #[inline]
@@ -267,21 +267,21 @@ impl Stated {
     }
 }
 
-impl Default for Stated {
+impl Default for StatedDeviations {
     /// Nothing stated.
     fn default() -> Self {
-        Stated { values: ByQuantity([0.0; Quantity::ALL.len()]) }
+        StatedDeviations { values: ByQuantity([0.0; Quantity::ALL.len()]) }
     }
 }
 
-impl From<ByQuantity<Option<f64>>> for Stated {
+impl From<ByQuantity<Option<f64>>> for StatedDeviations {
     fn from(values: ByQuantity<Option<f64>>) -> Self {
-        Stated { values: values.map(|value| value.unwrap_or(0.0)) }
+        StatedDeviations { values: values.map(|value| value.unwrap_or(0.0)) }
     }
 }
 
-impl From<Stated> for ByQuantity<Option<f64>> {
-    fn from(stated: Stated) -> Self {
+impl From<StatedDeviations> for ByQuantity<Option<f64>> {
+    fn from(stated: StatedDeviations) -> Self {
         ByQuantity::from_fn(|quantity| stated.get(quantity))
     }
 }
@@ -291,20 +291,20 @@ impl From<Stated> for ByQuantity<Option<f64>> {
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_model::measurement::{Measured, Quantity};
+/// #     pub use poecal_model::measurement::{MeasuredQuantities, Quantity};
 /// # }
-/// use poecal::{Measured, Quantity};
-/// let largest = Measured::from_fn(|quantity| (quantity == Quantity::Position).then_some(0.25));
+/// use poecal::{MeasuredQuantities, Quantity};
+/// let largest = MeasuredQuantities::from_fn(|quantity| (quantity == Quantity::Position).then_some(0.25));
 /// assert_eq!((largest.position_mm(), largest.rotation_deg()), (0.25, None));
 /// assert_eq!(serde_json::to_string(&largest).unwrap(), r#"{"position_mm":0.25,"rotation_deg":null}"#);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Measured<T>(ByQuantity<Option<T>>);
+pub struct MeasuredQuantities<T>(ByQuantity<Option<T>>);
 
-impl<T: Copy> Measured<T> {
+impl<T: Copy> MeasuredQuantities<T> {
     /// Value that `of` returns for each quantity.
     pub fn from_fn(of: impl FnMut(Quantity) -> Option<T>) -> Self {
-        Measured(ByQuantity::from_fn(of))
+        MeasuredQuantities(ByQuantity::from_fn(of))
     }
 
     /// The value of a quantity, if it was measured.
@@ -319,13 +319,13 @@ impl<T: Copy> Measured<T> {
     }
 
     /// Value that `to` returns for each value.
-    pub fn map<U: Copy>(self, mut to: impl FnMut(Quantity, T) -> U) -> Measured<U> {
-        Measured::from_fn(|quantity| self.get(quantity).map(|value| to(quantity, value)))
+    pub fn map<U: Copy>(self, mut to: impl FnMut(Quantity, T) -> U) -> MeasuredQuantities<U> {
+        MeasuredQuantities::from_fn(|quantity| self.get(quantity).map(|value| to(quantity, value)))
     }
 
     /// First measured quantity, lengths before angles: that by which a model is judged.
     #[must_use]
-    pub fn leading(&self) -> Option<(Quantity, T)> {
+    pub fn leading_value(&self) -> Option<(Quantity, T)> {
         self.iter().find(|(quantity, _)| quantity.unit() == Unit::Metre).or_else(|| self.iter().next())
     }
 
@@ -336,7 +336,7 @@ impl<T: Copy> Measured<T> {
     }
 }
 
-impl<T: Copy + Default> Measured<T> {
+impl<T: Copy + Default> MeasuredQuantities<T> {
     /// The value of the position, millimetres; the default if no position was measured.
     #[must_use]
     pub fn position_mm(&self) -> T {
@@ -346,11 +346,11 @@ impl<T: Copy + Default> Measured<T> {
     /// The value of the leading quantity; the default if nothing was measured.
     #[must_use]
     pub fn lead(&self) -> T {
-        self.leading().map(|(_, value)| value).unwrap_or_default()
+        self.leading_value().map(|(_, value)| value).unwrap_or_default()
     }
 }
 
-impl<T: Serialize> Serialize for Measured<T> {
+impl<T: Serialize> Serialize for MeasuredQuantities<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let is_written = |quantity, value: &Option<T>| value.is_some() || quantity == Quantity::Rotation;
         serializer.collect_map(
@@ -362,10 +362,11 @@ impl<T: Serialize> Serialize for Measured<T> {
     }
 }
 
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Measured<T> {
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for MeasuredQuantities<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut values: BTreeMap<String, Option<T>> = BTreeMap::deserialize(deserializer)?;
-        let found = Measured(ByQuantity::from_fn(|quantity| values.remove(quantity.key()).flatten()));
+        let found =
+            MeasuredQuantities(ByQuantity::from_fn(|quantity| values.remove(quantity.key()).flatten()));
         if found.0.iter().all(|(_, value)| value.is_none()) {
             return Err(D::Error::custom("missing field `position_mm`"));
         }
@@ -373,7 +374,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Measured<T> {
     }
 }
 
-impl<T: JsonSchema> JsonSchema for Measured<T> {
+impl<T: JsonSchema> JsonSchema for MeasuredQuantities<T> {
     fn schema_name() -> Cow<'static, str> {
         format!("MeasuredOf{}", T::schema_name()).into()
     }

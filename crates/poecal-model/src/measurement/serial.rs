@@ -3,8 +3,8 @@
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::functions::named;
-use super::{Measurement, Values};
+use super::functions::find_by_name;
+use super::{MeasuredValues, Measurement};
 
 impl Serialize for Measurement {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -14,8 +14,9 @@ impl Serialize for Measurement {
 
 impl<'de> Deserialize<'de> for Measurement {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (name, values): (String, Values) = Deserialize::deserialize(deserializer)?;
-        let function = named(&name).ok_or_else(|| D::Error::custom(format!("unknown function `{name}`")))?;
+        let (name, values): (String, MeasuredValues) = Deserialize::deserialize(deserializer)?;
+        let function =
+            find_by_name(&name).ok_or_else(|| D::Error::custom(format!("unknown function `{name}`")))?;
         Ok(Measurement::new(function, &values))
     }
 }

@@ -4,11 +4,11 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::{Function, Measurement, Quantity};
+use super::{Measurement, MeasurementFunction, Quantity};
 use poecal_arm::lie::Pose;
 
 /// Properties of a kind of session.
-pub struct Session {
+pub struct SessionTraits {
     /// Word.
     pub word: &'static str,
     /// Word of the future measurements, if a project can begin with it.
@@ -16,13 +16,13 @@ pub struct Session {
     /// Short description.
     pub help: &'static str,
     /// Measured function.
-    pub function: &'static Function,
+    pub function: &'static MeasurementFunction,
     /// Names of the stations.
     pub places: &'static [&'static str],
     /// Positions of the stations.
-    pub stands: Stands,
+    pub stands: StationLayout,
     /// Generation of measurements.
-    pub drawn: Draw,
+    pub drawn: MeasurementOrigin,
     /// Columns of its numbers in a file, with their units.
     pub columns: &'static [&'static str],
     /// Description of the numbers, as comments of a file.
@@ -31,7 +31,7 @@ pub struct Session {
 
 /// Positions of the stations of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stands {
+pub enum StationLayout {
     /// One device that measures the whole workspace of the robot.
     Anywhere,
     /// Around the robot, beyond its reach.
@@ -48,15 +48,15 @@ pub enum Stands {
 
 /// Generation of measurements.
 #[derive(Clone, Copy)]
-pub enum Draw {
+pub enum MeasurementOrigin {
     /// In any configuration, from the target's pose in the device's frame.
-    Seen(fn(&Pose, &mut Drawn<'_>) -> Measurement),
+    Seen(fn(&Pose, &mut RandomDraws<'_>) -> Measurement),
     /// In configurations that fulfil a constraint: the constraint with its noise, and the recorded measurement.
-    Touched(fn(&mut Drawn<'_>) -> [Measurement; 2]),
+    Touched(fn(&mut RandomDraws<'_>) -> [Measurement; 2]),
 }
 
 /// Random numbers of one measurement.
-pub struct Drawn<'a> {
+pub struct RandomDraws<'a> {
     /// The row.
     pub row: usize,
     /// Noise of lengths, metres: of a single one, the first.
@@ -75,23 +75,23 @@ pub struct Drawn<'a> {
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_model::measurement::SessionKind;
 /// # }
-/// use poecal::Kind;
-/// assert_eq!((Kind::POINT.word(), Kind::FLUSH.is_touched()), ("point", true));
+/// use poecal::SessionKind;
+/// assert_eq!((SessionKind::POINT.word(), SessionKind::FLUSH.is_touched()), ("point", true));
 /// ```
 #[derive(Clone, Copy)]
-pub struct Kind(&'static Session);
+pub struct SessionKind(&'static SessionTraits);
 
-impl Kind {
+impl SessionKind {
     /// Kind of a session.
-    pub(crate) const fn new(session: &'static Session) -> Self {
-        Kind(session)
+    pub(crate) const fn new(session: &'static SessionTraits) -> Self {
+        SessionKind(session)
     }
 
     /// Session of the kind.
     #[must_use]
-    pub fn session(self) -> &'static Session {
+    pub fn session(self) -> &'static SessionTraits {
         self.0
     }
 
@@ -104,19 +104,19 @@ impl Kind {
     /// True if a device with a frame of its own measures.
     #[must_use]
     pub fn has_device(self) -> bool {
-        self.0.stands == Stands::Anywhere
+        self.0.stands == StationLayout::Anywhere
     }
 
     /// True if each measurement is of two configurations.
     #[must_use]
     pub fn is_paired(self) -> bool {
-        self.0.stands == Stands::Before
+        self.0.stands == StationLayout::Before
     }
 
     /// True if it is a contact, so that a configuration fulfils a constraint.
     #[must_use]
     pub fn is_touched(self) -> bool {
-        matches!(self.0.drawn, Draw::Touched(_))
+        matches!(self.0.drawn, MeasurementOrigin::Touched(_))
     }
 
     /// True if its configurations can be chosen freely: those of contacts and of pairs cannot.
@@ -144,15 +144,15 @@ impl Kind {
     }
 }
 
-impl PartialEq for Kind {
+impl PartialEq for SessionKind {
     fn eq(&self, other: &Self) -> bool {
         self.word() == other.word()
     }
 }
 
-impl Eq for Kind {}
+impl Eq for SessionKind {}
 
-impl fmt::Debug for Kind {
+impl fmt::Debug for SessionKind {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.word())
     }

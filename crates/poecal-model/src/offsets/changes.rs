@@ -3,9 +3,9 @@
 
 use nalgebra::{Vector3, Vector6};
 
-use super::fit::{Block, Comparison, Normal};
+use super::fit::{OffsetEquations, ResidualBlock, RobotPair};
 use super::screws::check_same_joints;
-use super::{End, OffsetOptions};
+use super::{EndConstraint, OffsetOptions};
 use crate::robot::{JointKind, Robot};
 use poecal_numerics::error::Result;
 
@@ -52,14 +52,14 @@ impl JointChange {
     /// The shift in words: `2.00 ± 0.31 mm toward +x`.
     #[must_use]
     pub fn shift_words(&self) -> String {
-        let told = Told::new(1e3, "mm", self.sigma_shift, self.is_estimated);
+        let told = PartDetermination::new(1e3, "mm", self.sigma_shift, self.is_estimated);
         told.vector("shift", "toward", &self.shift)
     }
 
     /// The tilt in words: `tilt 0.700 ± 0.020 deg about +y`.
     #[must_use]
     pub fn tilt_words(&self) -> String {
-        let told = Told::new(1f64.to_degrees(), "deg", self.sigma_tilt, self.is_estimated);
+        let told = PartDetermination::new(1f64.to_degrees(), "deg", self.sigma_tilt, self.is_estimated);
         told.vector("tilt", "about", &self.tilt)
     }
 
@@ -70,13 +70,13 @@ impl JointChange {
             JointKind::Revolute => (1f64.to_degrees(), "deg"),
             JointKind::Prismatic => (1e3, "mm"),
         };
-        let told = Told::new(factor, unit, self.sigma_offset, self.is_estimated);
+        let told = PartDetermination::new(factor, unit, self.sigma_offset, self.is_estimated);
         self.offset.map_or_else(|| "offset not determined".to_owned(), |offset| told.number("offset", offset))
     }
 }
 
 /// Format of a part in words.
-struct Told {
+struct PartDetermination {
     factor: f64,
     unit: &'static str,
     sigma: Option<f64>,
@@ -84,15 +84,15 @@ struct Told {
     decimals: usize,
 }
 
-impl Told {
+impl PartDetermination {
     fn new(factor: f64, unit: &'static str, sigma: Option<f64>, is_estimated: bool) -> Self {
         // Two digits of the standard deviation.
         let digits = |sigma: f64| (1.0 - (sigma * factor).log10().floor()).clamp(0.0, 6.0);
         let decimals = sigma.filter(|sigma| *sigma > 0.0).map_or(3.0, digits) as usize;
-        Told { factor, unit, sigma, is_determined: sigma.is_some() || !is_estimated, decimals }
+        PartDetermination { factor, unit, sigma, is_determined: sigma.is_some() || !is_estimated, decimals }
     }
 
-    fn signed(&self, value: f64) -> String {
+    fn format_signed(&self, value: f64) -> String {
         let (value, decimals) = (value * self.factor, self.decimals);
         let text = format!("{:.decimals$}", value.abs());
         let is_zero = text.bytes().all(|it| matches!(it, b'0' | b'.'));
@@ -114,7 +114,7 @@ impl Told {
     }
 
     /// Text of a part that is no more than noise, or not determined.
-    fn nothing(&self, name: &str, size: f64) -> Option<String> {
+    fn describe_nothing(&self, name: &str, size: f64) -> Option<String> {
         if !self.is_determined {
             return Some(format!("{name} not determined"));
         }
@@ -128,13 +128,13 @@ impl Told {
     }
 
     fn number(&self, name: &str, value: f64) -> String {
-        let told = || format!("{name} {}{} {}", self.signed(value), self.sigma(), self.unit);
-        self.nothing(name, value.abs()).unwrap_or_else(told)
+        let told = || format!("{name} {}{} {}", self.format_signed(value), self.sigma(), self.unit);
+        self.describe_nothing(name, value.abs()).unwrap_or_else(told)
     }
 
     fn vector(&self, name: &str, relation: &str, value: &Vector3<f64>) -> String {
         let size = value.norm();
-        if let Some(words) = self.nothing(name, size) {
+        if let Some(words) = self.describe_nothing(name, size) {
             return words;
         }
         let decimals = self.decimals;
@@ -143,7 +143,7 @@ impl Told {
         match direction(value) {
             Some(direction) => format!("{name}{length} {relation} {direction}"),
             None => {
-                let parts: Vec<String> = value.iter().map(|part| self.signed(*part)).collect();
+                let parts: Vec<String> = value.iter().map(|part| self.format_signed(*part)).collect();
                 format!("{name}{length} ({})", parts.join(", "))
             }
         }
@@ -165,8 +165,8 @@ pub struct Changes {
     length_m: f64,
     /// Directions of the other robot's axes after offsets and base motion.
     directions: Vec<Vector3<f64>>,
-    blocks: Vec<(usize, Block)>,
-    normal: Normal,
+    blocks: Vec<(usize, ResidualBlock)>,
+    normal: OffsetEquations,
     rows: Vec<f64>,
     scales: Vec<f64>,
 }
@@ -186,15 +186,15 @@ impl Changes {
     ///
     /// # Errors
     /// As [`explain`](super::explain).
-    pub fn from_robots(nominal: &Robot, actual: &Robot, base: End) -> Result<Self> {
+    pub fn from_robots(nominal: &Robot, actual: &Robot, base: EndConstraint) -> Result<Self> {
         check_same_joints(nominal, actual)?;
         let (nominal, actual) = (&nominal.without_offsets(), &actual.without_offsets());
-        let options = OffsetOptions { base, tip: End::Free, ..OffsetOptions::default() };
-        let comparison = Comparison::new(nominal, actual, &options);
-        let found = comparison.best();
+        let options = OffsetOptions { base, tip: EndConstraint::Free, ..OffsetOptions::default() };
+        let comparison = RobotPair::new(nominal, actual, &options);
+        let found = comparison.best_state();
         let (screws, blocks) = comparison.blocks(&found);
         let (normal, rows) = comparison.equations(&screws, &blocks);
-        let undetermined = comparison.undetermined(&found);
+        let undetermined = comparison.undetermined_joints(&found);
         let joint = |(index, joint): (usize, &crate::robot::Joint)| {
             let (own, goal) = (screws[index].direction(), joint.screw.direction());
             let across = own.cross(&goal);
@@ -290,21 +290,21 @@ mod tests {
     use poecal_arm::lie::{Pose, Twist};
 
     /// An elbow with offsets, and axes moved by twists of some size.
-    fn moved(size: f64) -> Robot {
+    fn move_elbow(size: f64) -> Robot {
         let offsets: Vec<f64> = [0.0, 0.3, -0.2, 0.1, 0.4, 0.0].into_iter().map(|it| it * size).collect();
         let mut robot = into_screws(&elbow(), &offsets).unwrap();
         for (k, joint) in robot.joints.iter_mut().enumerate() {
             let k = k as f64;
             let twist = Vector6::from_fn(|i, _| 0.01 * size * (1.7 * k + 2.3 * i as f64).sin());
-            joint.screw = joint.screw.transformed(&Pose::exp(&Twist::from_vector(&twist)));
+            joint.screw = joint.screw.transform(&Pose::exp(&Twist::from_vector(&twist)));
         }
         robot
     }
 
     #[test]
     fn derivatives_are_those_of_differences() {
-        let robot = moved(0.02);
-        let changes = Changes::from_robots(&elbow(), &robot, End::Free).unwrap();
+        let robot = move_elbow(0.02);
+        let changes = Changes::from_robots(&elbow(), &robot, EndConstraint::Free).unwrap();
         let mut worst = 0f64;
         for (joint, motion) in (0..6).flat_map(|joint| (0..6).map(move |motion| (joint, motion))) {
             let mut twists = vec![Vector6::zeros(); 6];
@@ -314,8 +314,8 @@ mod tests {
             let at = |sign: f64| {
                 let mut robot = robot.clone();
                 let by = Pose::exp(&Twist::from_vector(&(twists[joint] * (sign * STEP))));
-                robot.joints[joint].screw = robot.joints[joint].screw.transformed(&by);
-                Changes::from_robots(&elbow(), &robot, End::Free).unwrap()
+                robot.joints[joint].screw = robot.joints[joint].screw.transform(&by);
+                Changes::from_robots(&elbow(), &robot, EndConstraint::Free).unwrap()
             };
             let (less, more) = (at(-1.0), at(1.0));
             for (k, entry) in found.iter().enumerate() {
@@ -339,7 +339,7 @@ mod tests {
     fn offsets_alone_are_found_as_such() {
         let offsets = [0.0, 0.01, -0.02, 0.015, 0.005, 0.0];
         let robot = into_screws(&elbow(), &offsets).unwrap();
-        let changes = Changes::from_robots(&elbow(), &robot, End::Free).unwrap();
+        let changes = Changes::from_robots(&elbow(), &robot, EndConstraint::Free).unwrap();
         let words: Vec<String> = changes.joints.iter().map(JointChange::words).collect();
         println!("{words:#?}");
         assert_eq!(changes.joints[0].offset, None, "the base may turn instead");
@@ -353,7 +353,7 @@ mod tests {
 
     #[test]
     fn what_is_noise_is_said_to_be() {
-        let mut change = Changes::from_robots(&elbow(), &elbow(), End::Free).unwrap().joints[1];
+        let mut change = Changes::from_robots(&elbow(), &elbow(), EndConstraint::Free).unwrap().joints[1];
         change.is_estimated = true;
         change.shift = Vector3::new(0.001, 0.001, 0.0);
         change.sigma_shift = Some(0.00031);

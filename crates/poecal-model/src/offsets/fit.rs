@@ -4,7 +4,7 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 
 use nalgebra::{DMatrix, Matrix3, Matrix3x6, Vector3, Vector6};
 
-use super::{End, OffsetOptions};
+use super::{EndConstraint, OffsetOptions};
 use crate::robot::{Joint, JointKind, Robot};
 use poecal_arm::lie::{Pose, Screw, Twist, by_turn, by_twist, hat};
 use poecal_numerics::linalg;
@@ -23,7 +23,7 @@ pub(crate) struct OffsetState {
 }
 
 /// Two robots with the same joints.
-pub(crate) struct Comparison<'a> {
+pub(crate) struct RobotPair<'a> {
     pub(crate) nominal: &'a Robot,
     pub(crate) actual: &'a Robot,
     pub(crate) options: &'a OffsetOptions,
@@ -33,7 +33,7 @@ pub(crate) struct Comparison<'a> {
 }
 
 /// Normal equations at a state, by their eigenvalues; unknowns are counted in metres.
-pub(crate) struct Normal {
+pub(crate) struct OffsetEquations {
     pub(crate) cost: f64,
     gradient: Vec<f64>,
     values: Vec<f64>,
@@ -41,23 +41,23 @@ pub(crate) struct Normal {
 }
 
 /// A residual and its derivative by a spatial motion of all joints from one on.
-pub(crate) type Block = (Vector3<f64>, Matrix3x6<f64>);
+pub(crate) type ResidualBlock = (Vector3<f64>, Matrix3x6<f64>);
 
-impl Normal {
+impl OffsetEquations {
     /// Normal equations from the upper half of the normal matrix.
     pub(crate) fn new(gram: &[f64], gradient: Vec<f64>, residuals: &[f64]) -> Self {
         let (values, vectors) = linalg::symmetric_eigen(gram, gradient.len());
         let cost = residuals.iter().map(|residual| residual * residual).sum();
-        Normal { cost, gradient, values, vectors }
+        OffsetEquations { cost, gradient, values, vectors }
     }
 
-    fn largest(&self) -> f64 {
+    fn largest_eigenvalue(&self) -> f64 {
         self.values.last().copied().unwrap_or(0.0)
     }
 
     /// Number of undetermined directions, which are the first eigenvectors.
-    fn open(&self) -> usize {
-        self.values.iter().take_while(|&&value| value <= OPEN * self.largest()).count()
+    fn open_directions(&self) -> usize {
+        self.values.iter().take_while(|&&value| value <= OPEN * self.largest_eigenvalue()).count()
     }
 
     /// Damped step, zero in undetermined directions.
@@ -69,7 +69,9 @@ impl Normal {
     pub(crate) fn step_by(&self, gradient: &[f64], damping: f64) -> Vec<f64> {
         let n = gradient.len();
         let mut step = vec![0.0; n];
-        for (&value, vector) in self.values.iter().zip(self.vectors.column_iter()).skip(self.open()) {
+        for (&value, vector) in
+            self.values.iter().zip(self.vectors.column_iter()).skip(self.open_directions())
+        {
             let along: f64 = vector.iter().zip(gradient).map(|(a, b)| a * b).sum();
             step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s -= a * along / (value + damping));
         }
@@ -77,53 +79,53 @@ impl Normal {
     }
 }
 
-impl<'a> Comparison<'a> {
+impl<'a> RobotPair<'a> {
     pub(crate) fn new(nominal: &'a Robot, actual: &'a Robot, options: &'a OffsetOptions) -> Self {
-        Comparison { nominal, actual, options, length_m: nominal.arm_m() / 3.0, offsets_free: true }
+        RobotPair { nominal, actual, options, length_m: nominal.arm_m() / 3.0, offsets_free: true }
     }
 
     /// Best state that is reached from zero offsets and from those in closed form; angles are in (-π, π].
-    pub(crate) fn best(&self) -> OffsetState {
-        let mut starts = vec![self.sequential(End::Kept), self.unmoved()];
-        if self.options.base == End::Free {
-            starts.push(self.sequential(End::Free));
+    pub(crate) fn best_state(&self) -> OffsetState {
+        let mut starts = vec![self.sequential(EndConstraint::Kept), self.unmoved_state()];
+        if self.options.base == EndConstraint::Free {
+            starts.push(self.sequential(EndConstraint::Free));
         }
         self.best_of(starts)
     }
 
     /// Best state in which all offsets are zero.
     pub(crate) fn best_without_offsets(&self) -> OffsetState {
-        let base_only = Comparison { offsets_free: false, ..*self };
+        let base_only = RobotPair { offsets_free: false, ..*self };
         let by_first_screws =
-            OffsetState { base: base_only.sequential(self.options.base).base, ..self.unmoved() };
-        base_only.best_of(vec![self.unmoved(), by_first_screws])
+            OffsetState { base: base_only.sequential(self.options.base).base, ..self.unmoved_state() };
+        base_only.best_of(vec![self.unmoved_state(), by_first_screws])
     }
 
-    fn unmoved(&self) -> OffsetState {
+    fn unmoved_state(&self) -> OffsetState {
         OffsetState { offsets: vec![0.0; self.nominal.joints.len()], base: Pose::identity() }
     }
 
     fn best_of(&self, starts: Vec<OffsetState>) -> OffsetState {
         let ends = starts.into_iter().map(|start| self.refine(start));
         let best = ends.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
-        best.unwrap_or_else(|| self.unmoved())
+        best.unwrap_or_else(|| self.unmoved_state())
     }
 
     /// Joints that have a part in undetermined directions.
-    pub(crate) fn undetermined(&self, state: &OffsetState) -> Vec<usize> {
+    pub(crate) fn undetermined_joints(&self, state: &OffsetState) -> Vec<usize> {
         let normal = self.normal(state);
-        let open = normal.open();
+        let open = normal.open_directions();
         let part =
             |joint: usize| normal.vectors.row(joint).iter().take(open).map(|part| part * part).sum::<f64>();
         (0..state.offsets.len()).filter(|&joint| part(joint).sqrt() > NAMED).collect()
     }
 
     /// Screws and home pose of the nominal robot with offsets and base motion.
-    pub(crate) fn moved(&self, state: &OffsetState) -> (Vec<Screw>, Pose) {
+    pub(crate) fn move_robot(&self, state: &OffsetState) -> (Vec<Screw>, Pose) {
         let mut motion = state.base;
         let mut screws = Vec::with_capacity(self.nominal.joints.len());
         for (joint, &offset) in self.nominal.joints.iter().zip(&state.offsets) {
-            let screw = joint.screw.transformed(&motion);
+            let screw = joint.screw.transform(&motion);
             motion = (screw.exp(offset) * motion).orthonormalized();
             screws.push(screw);
         }
@@ -151,7 +153,7 @@ impl<'a> Comparison<'a> {
     fn descend(&self, start: OffsetState) -> OffsetState {
         let mut state = start;
         let mut normal = self.normal(&state);
-        let mut damping = 1e-3 * normal.largest();
+        let mut damping = 1e-3 * normal.largest_eigenvalue();
         for _ in 0..200 {
             let candidate = self.retract(&state, &normal.step(damping));
             if self.cost(&candidate) < normal.cost {
@@ -159,9 +161,9 @@ impl<'a> Comparison<'a> {
                 normal = self.normal(&state);
                 damping *= 0.1;
             } else {
-                damping = (10.0 * damping).max(1e-6 * normal.largest());
+                damping = (10.0 * damping).max(1e-6 * normal.largest_eigenvalue());
             }
-            if damping > 1e3 * normal.largest() {
+            if damping > 1e3 * normal.largest_eigenvalue() {
                 break;
             }
         }
@@ -185,7 +187,7 @@ impl<'a> Comparison<'a> {
         let n = self.dim();
         let mut step = vec![0.0; n];
         let normal = self.normal(state);
-        let open = normal.open();
+        let open = normal.open_directions();
         if !self.offsets_free || open == 0 {
             return step;
         }
@@ -217,7 +219,7 @@ impl<'a> Comparison<'a> {
                 JointKind::Prismatic => 1.0,
             }));
         }
-        if self.options.base == End::Free {
+        if self.options.base == EndConstraint::Free {
             scales.extend([1.0, 1.0, 1.0, self.length_m, self.length_m, self.length_m]);
         }
         scales
@@ -233,7 +235,7 @@ impl<'a> Comparison<'a> {
             for ((offset, step), joint) in next.offsets.iter_mut().zip(offsets).zip(&self.nominal.joints) {
                 *offset += step;
                 if joint.kind == JointKind::Revolute {
-                    *offset = wrapped(*offset);
+                    *offset = wrap_angle(*offset);
                 }
             }
         }
@@ -245,13 +247,13 @@ impl<'a> Comparison<'a> {
     }
 
     /// Residuals of the joints in order, then of the home pose, each with the number of joints that move it.
-    pub(crate) fn blocks(&self, state: &OffsetState) -> (Vec<Screw>, Vec<(usize, Block)>) {
-        let (screws, home) = self.moved(state);
+    pub(crate) fn blocks(&self, state: &OffsetState) -> (Vec<Screw>, Vec<(usize, ResidualBlock)>) {
+        let (screws, home) = self.move_robot(state);
         let mut blocks = Vec::new();
         for (index, (screw, joint)) in screws.iter().zip(&self.actual.joints).enumerate() {
             blocks.extend(screw_blocks(screw, joint, self.length_m).map(|block| (index, block)));
         }
-        if self.options.tip == End::Kept {
+        if self.options.tip == EndConstraint::Kept {
             let goal = &self.actual.home;
             blocks.push((screws.len(), (home.translation - goal.translation, by_twist(&home.translation))));
             // Chords between the axes of the two frames: for small angles the square of the rotation, and smooth for large ones.
@@ -270,14 +272,18 @@ impl<'a> Comparison<'a> {
         self.blocks(state).1.iter().map(|(_, (residual, _))| residual.norm_squared()).sum()
     }
 
-    fn normal(&self, state: &OffsetState) -> Normal {
+    fn normal(&self, state: &OffsetState) -> OffsetEquations {
         let (screws, blocks) = self.blocks(state);
         let (normal, _) = self.equations(&screws, &blocks);
         normal
     }
 
     /// Normal equations of some blocks, and the derivatives of their residuals by the scaled unknowns, row by row.
-    pub(crate) fn equations(&self, screws: &[Screw], blocks: &[(usize, Block)]) -> (Normal, Vec<f64>) {
+    pub(crate) fn equations(
+        &self,
+        screws: &[Screw],
+        blocks: &[(usize, ResidualBlock)],
+    ) -> (OffsetEquations, Vec<f64>) {
         let scales = self.scales();
         let n = scales.len();
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());
@@ -289,7 +295,7 @@ impl<'a> Comparison<'a> {
                     if index < *movers { derivative * screw.twist().to_vector() } else { Vector3::zeros() }
                 }));
             }
-            if self.options.base == End::Free {
+            if self.options.base == EndConstraint::Free {
                 columns.extend(derivative.column_iter().map(|column| column.into_owned()));
             }
             for (coordinate, value) in residual.iter().enumerate() {
@@ -300,12 +306,12 @@ impl<'a> Comparison<'a> {
         let (mut gram, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
         linalg::add_gram(&mut gram, n, &rows, 0);
         linalg::add_gradient(&mut gradient, &rows, &residuals);
-        (Normal::new(&gram, gradient, &residuals), rows)
+        (OffsetEquations::new(&gram, gradient, &residuals), rows)
     }
 }
 
 /// Tilt (as a chord at `length_m`) and shift of a screw from the actual joint's, relative to the origin of that one.
-fn screw_blocks(screw: &Screw, actual: &Joint, length_m: f64) -> impl Iterator<Item = Block> + use<> {
+fn screw_blocks(screw: &Screw, actual: &Joint, length_m: f64) -> impl Iterator<Item = ResidualBlock> + use<> {
     let direction = screw.direction();
     let tilt = ((direction - actual.screw.direction()) * length_m, by_turn(&-hat(&direction), length_m));
     let shift = (!screw.is_prismatic()).then(|| {
@@ -325,7 +331,7 @@ fn norm(step: &[f64]) -> f64 {
 }
 
 /// The same angle in (-π, π]; an angle in this interval is unchanged, to the last digit.
-pub(crate) fn wrapped(angle: f64) -> f64 {
+pub(crate) fn wrap_angle(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;
     }

@@ -2,20 +2,20 @@
 
 /// State of one end of the robot in the explanation of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum EndConstraint {
     /// Both robots have the same frame there.
     Kept,
     /// The frame is estimated with the offsets.
     Free,
 }
 
-impl End {
+impl EndConstraint {
     /// The word used in files and options: `kept` or `free`.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            End::Kept => "kept",
-            End::Free => "free",
+            EndConstraint::Kept => "kept",
+            EndConstraint::Free => "free",
         }
     }
 }
@@ -27,9 +27,9 @@ const CONFIGURATIONS: usize = 10_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetOptions {
     /// Base frame: free if the actual robot's is a choice.
-    pub base: End,
+    pub base: EndConstraint,
     /// Tip frame: free if the tool was changed or refitted.
-    pub tip: End,
+    pub tip: EndConstraint,
     /// Number of random configurations in which the tips are compared.
     pub configurations: usize,
     /// Seed of these.
@@ -38,6 +38,11 @@ pub struct OffsetOptions {
 
 impl Default for OffsetOptions {
     fn default() -> Self {
-        OffsetOptions { base: End::Kept, tip: End::Kept, configurations: CONFIGURATIONS, seed: 1 }
+        OffsetOptions {
+            base: EndConstraint::Kept,
+            tip: EndConstraint::Kept,
+            configurations: CONFIGURATIONS,
+            seed: 1,
+        }
     }
 }

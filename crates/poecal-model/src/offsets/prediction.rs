@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::{End, OffsetOptions};
+use super::{EndConstraint, OffsetOptions};
 use crate::robot::Robot;
 use crate::simulate::random_configuration;
 use poecal_arm::lie::{Pose, rotation};
@@ -24,19 +24,19 @@ pub struct TipError {
 }
 
 /// Random configurations, with the pose of the actual robot's tip in each.
-pub(crate) struct Predictions {
+pub(crate) struct PredictionSample {
     readings: Vec<Vec<f64>>,
     actual: Vec<Pose>,
-    tip: End,
+    tip: EndConstraint,
 }
 
-impl Predictions {
+impl PredictionSample {
     pub(crate) fn new(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let readings: Vec<Vec<f64>> =
             (0..options.configurations).map(|_| random_configuration(nominal, &mut generator)).collect();
         let actual = readings.iter().map(|readings| actual.forward_kinematics(readings)).collect();
-        Predictions { readings, actual, tip: options.tip }
+        PredictionSample { readings, actual, tip: options.tip }
     }
 
     /// Readings of each configuration with the actual tip.
@@ -49,8 +49,10 @@ impl Predictions {
         let tips: Vec<Pose> =
             self.readings.iter().map(|readings| *base * robot.forward_kinematics(readings)).collect();
         let tip_motion = match self.tip {
-            End::Kept => Pose::identity(),
-            End::Free => mean(tips.iter().zip(&self.actual).map(|(tip, actual)| tip.inverse() * *actual)),
+            EndConstraint::Kept => Pose::identity(),
+            EndConstraint::Free => {
+                mean(tips.iter().zip(&self.actual).map(|(tip, actual)| tip.inverse() * *actual))
+            }
         };
         let (mut squares_m2, mut squares_rad2, mut max_m, mut max_rad) = (0.0, 0.0, 0.0_f64, 0.0_f64);
         for (tip, actual) in tips.iter().zip(&self.actual) {

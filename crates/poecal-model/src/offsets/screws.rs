@@ -36,7 +36,7 @@ pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
         }
         let screw = joint.screw;
         let before = of(&motions, robot.body_before(index));
-        joint.screw = screw.transformed(&before);
+        joint.screw = screw.transform(&before);
         let motion = (before * screw.exp(offset)).orthonormalized();
         joint.frame = (motion * joint.frame).orthonormalized();
         motions.push(motion);

@@ -2,25 +2,25 @@
 
 use nalgebra::Vector3;
 
-use super::End;
-use super::fit::{Comparison, OffsetState};
+use super::EndConstraint;
+use super::fit::{OffsetState, RobotPair};
 use poecal_arm::lie::{Pose, Screw, hat};
 
 /// Sine of an angle, or share of the arm's length, below which a motion does not determine an offset.
 const LEAST_MOTION: f64 = 1e-3;
 
-impl Comparison<'_> {
+impl RobotPair<'_> {
     /// State in which each offset turns the next screw that it moves as near as possible to the actual one; a free base first takes
     /// the first screw there.
-    pub(crate) fn sequential(&self, base: End) -> OffsetState {
+    pub(crate) fn sequential(&self, base: EndConstraint) -> OffsetState {
         let base = match base {
-            End::Kept => Pose::identity(),
-            End::Free => self.base_by_first_screws(),
+            EndConstraint::Kept => Pose::identity(),
+            EndConstraint::Free => self.base_by_first_screws(),
         };
         let mut motion = base;
         let mut offsets = Vec::with_capacity(self.nominal.joints.len());
         for (index, joint) in self.nominal.joints.iter().enumerate() {
-            let about = joint.screw.transformed(&motion);
+            let about = joint.screw.transform(&motion);
             let by_screws = self.by_next_screw(&about, index, &motion);
             let offset = by_screws.or_else(|| self.by_home(&about, &motion)).unwrap_or(0.0);
             offsets.push(offset);
@@ -46,7 +46,7 @@ impl Comparison<'_> {
     fn by_next_screw(&self, about: &Screw, index: usize, motion: &Pose) -> Option<f64> {
         let pairs = self.nominal.joints.iter().zip(&self.actual.joints).skip(index + 1);
         let mut values = pairs.map(|(nominal, actual)| {
-            let moving = nominal.screw.transformed(motion);
+            let moving = nominal.screw.transform(motion);
             let origin = actual.screw.nearest_point(&actual.frame.translation);
             nearest_value(about, &moving, &actual.screw, &origin, LEAST_MOTION * self.length_m)
         });
@@ -55,7 +55,7 @@ impl Comparison<'_> {
 
     /// Value of `about` that brings the home pose, moved by `motion`, nearest; `None` if the tip is free.
     fn by_home(&self, about: &Screw, motion: &Pose) -> Option<f64> {
-        if self.options.tip == End::Free {
+        if self.options.tip == EndConstraint::Free {
             return None;
         }
         let (home, goal) = (*motion * self.nominal.home, self.actual.home);

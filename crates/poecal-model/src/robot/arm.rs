@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 use poecal_arm::{
-    Argument, Arm, Curve, Drawn, Function, Joint as ArmJoint, JointValue, MOST_JOINTS, Model, Pull, Term,
-    Wave,
+    Arm, ArmModel, GravityTorque, JointValue, MOST_JOINTS, ModelJoint as ArmJoint, NominalJoint, Term,
+    TermArgument, TermCurve, TermFunction, Wave,
 };
 
-use super::{JointTerm, Limits, Robot, Statics};
+use super::{JointLimits, JointTerm, Robot, Statics};
 use poecal_numerics::error::{ErrorKind, Result};
 
 impl Robot {
@@ -51,11 +51,11 @@ impl Robot {
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if more than [`MOST_JOINTS`] readings move the tip.
-    pub fn arm_model(&self, factors: &[f64]) -> Result<(Model, Vec<usize>)> {
+    pub fn arm_model(&self, factors: &[f64]) -> Result<(ArmModel, Vec<usize>)> {
         self.model_holding(factors, &[])
     }
 
-    fn model_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Model, Vec<usize>)> {
+    fn model_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(ArmModel, Vec<usize>)> {
         let indices = self.reading_indices();
         let path = self.joints_to(self.tip_body());
         let moving: Vec<usize> =
@@ -75,7 +75,7 @@ impl Robot {
         let factors: Vec<f64> = (self.factors.iter().enumerate())
             .map(|(index, it)| factors.get(index).map_or(0.0, |value| value - it.reference))
             .collect();
-        let values = Values {
+        let values = JointValues {
             robot: self,
             statics,
             moving: &moving,
@@ -84,7 +84,7 @@ impl Robot {
             held,
             factors,
         };
-        let mut model = Model::new(readings.len(), &self.home);
+        let mut model = ArmModel::new(readings.len(), &self.home);
         for &joint in &path {
             let value = values.value_of_joint(joint);
             if value != JointValue::default() {
@@ -97,7 +97,7 @@ impl Robot {
                 let screw = gravity.axes.get(joint).map_or(self.joints[joint].screw, |it| it.0);
                 let (constant, linear) = values.by_reading(joint);
                 let (reading, factor) = linear.unwrap_or((0, 0.0));
-                model.drawing.push(Drawn { screw, reading, factor, constant });
+                model.drawing.push(NominalJoint { screw, reading, factor, constant });
             }
         } else {
             model.gravity = Vector3::zeros();
@@ -110,14 +110,14 @@ impl Robot {
     fn limits_of(&self, moving: &[usize], indices: &[usize], reading: usize) -> Option<(f64, f64)> {
         let joint =
             moving.iter().map(|&it| (it, &self.joints[it])).find(|(it, _)| indices[*it] == reading)?.1;
-        let limits = joint.limits.filter(|it| it.upper - it.lower < Limits::PLACEHOLDER_M)?;
+        let limits = joint.limits.filter(|it| it.upper - it.lower < JointLimits::PLACEHOLDER_M)?;
         let (low, high) = (limits.lower, limits.upper);
         (joint.reading.multiplier == 1.0 && joint.reading.offset == 0.0).then_some((low, high))
     }
 }
 
 /// Values of joints as functions of the readings of an arm.
-struct Values<'a> {
+struct JointValues<'a> {
     robot: &'a Robot,
     statics: Option<Statics<'a>>,
     /// Joints of the arm except compliant joints.
@@ -132,7 +132,7 @@ struct Values<'a> {
     factors: Vec<f64>,
 }
 
-impl Values<'_> {
+impl JointValues<'_> {
     fn value_of_joint(&self, joint: usize) -> JointValue {
         let (constant, linear) = self.by_reading(joint);
         let linear = linear.into_iter().collect();
@@ -140,22 +140,22 @@ impl Values<'_> {
         let mut moments = Vec::new();
         let terms = self.robot.terms.iter().filter(|it| it.joint == joint && it.coefficient != 0.0);
         for &JointTerm { term, coefficient, .. } in terms {
-            let is_linear = matches!(term.kind().row().function, Function::Identity);
+            let is_linear = matches!(term.kind().row().function, TermFunction::Identity);
             match term.argument() {
-                Argument::Nothing => value.constant += coefficient * term.function(0.0)[0],
-                Argument::Factor => value.constant += coefficient * term.function(self.factor(term))[0],
-                Argument::OwnValue => self.add_of_value(&mut value, term, coefficient, joint),
-                Argument::OtherJoint => self.add_of_value(&mut value, term, coefficient, term.index()),
-                Argument::Masses | Argument::Weight | Argument::Payload if is_linear => {
+                TermArgument::Nothing => value.constant += coefficient * term.function(0.0)[0],
+                TermArgument::Factor => value.constant += coefficient * term.function(self.factor(term))[0],
+                TermArgument::OwnValue => self.add_of_value(&mut value, term, coefficient, joint),
+                TermArgument::OtherJoint => self.add_of_value(&mut value, term, coefficient, term.index()),
+                TermArgument::Masses | TermArgument::Weight | TermArgument::Payload if is_linear => {
                     moments.push((term, coefficient));
                 }
-                Argument::Masses | Argument::Weight | Argument::Payload => {
+                TermArgument::Masses | TermArgument::Weight | TermArgument::Payload => {
                     let (linear, pull) = (Vec::new(), self.pull(joint, &[(term, 1.0)]));
-                    value.curves.push(Curve { term, coefficient, constant: 0.0, linear, pull });
+                    value.curves.push(TermCurve { term, coefficient, constant: 0.0, linear, pull });
                 }
             }
         }
-        value.waves = together(&value.waves);
+        value.waves = merge_waves(&value.waves);
         value.pull = self.pull(joint, &moments);
         value
     }
@@ -184,19 +184,19 @@ impl Values<'_> {
         let wave =
             Wave { reading, factor, offset: constant, order: term.number() as f64, cosine: 0.0, sine: 0.0 };
         match term.kind().row().function {
-            Function::One => value.constant += coefficient,
-            Function::Identity => {
+            TermFunction::One => value.constant += coefficient,
+            TermFunction::Identity => {
                 value.constant += coefficient * constant;
                 match value.linear.iter_mut().find(|it| it.0 == reading) {
                     Some(it) => it.1 += coefficient * factor,
                     None => value.linear.push((reading, coefficient * factor)),
                 }
             }
-            Function::Sine => value.waves.push(Wave { sine: coefficient, ..wave }),
-            Function::Cosine => value.waves.push(Wave { cosine: coefficient, ..wave }),
-            Function::Other(_) => {
+            TermFunction::Sine => value.waves.push(Wave { sine: coefficient, ..wave }),
+            TermFunction::Cosine => value.waves.push(Wave { cosine: coefficient, ..wave }),
+            TermFunction::Other(_) => {
                 let linear = vec![(reading, factor)];
-                value.curves.push(Curve { term, coefficient, constant, linear, pull: None });
+                value.curves.push(TermCurve { term, coefficient, constant, linear, pull: None });
             }
         }
     }
@@ -207,17 +207,22 @@ impl Values<'_> {
     }
 
     /// Moments about a joint that terms are functions of, by these coefficients.
-    fn pull(&self, joint: usize, terms: &[(Term, f64)]) -> Option<Pull> {
+    fn pull(&self, joint: usize, terms: &[(Term, f64)]) -> Option<GravityTorque> {
         let weights = self.robot.gravity.as_ref()?.weights.len();
         let (mut sags, mut of_masses) = (vec![0.0; weights], 0.0);
         for &(term, coefficient) in terms {
             match term.argument() {
-                Argument::Masses => of_masses += coefficient,
-                Argument::Weight => sags.get_mut(term.index()).into_iter().for_each(|it| *it += coefficient),
-                Argument::Payload => {
+                TermArgument::Masses => of_masses += coefficient,
+                TermArgument::Weight => {
+                    sags.get_mut(term.index()).into_iter().for_each(|it| *it += coefficient)
+                }
+                TermArgument::Payload => {
                     sags.last_mut().into_iter().for_each(|it| *it += coefficient * self.factor(term));
                 }
-                Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => {}
+                TermArgument::Nothing
+                | TermArgument::OwnValue
+                | TermArgument::OtherJoint
+                | TermArgument::Factor => {}
             }
         }
         self.statics.as_ref()?.pull(joint, self.moving, &sags, of_masses)
@@ -225,7 +230,7 @@ impl Values<'_> {
 }
 
 /// Waves with those of one order joined.
-fn together(waves: &[Wave]) -> Vec<Wave> {
+fn merge_waves(waves: &[Wave]) -> Vec<Wave> {
     let mut out: Vec<Wave> = Vec::new();
     for wave in waves {
         match out.iter_mut().find(|it| it.order == wave.order && it.reading == wave.reading) {

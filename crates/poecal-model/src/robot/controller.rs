@@ -86,7 +86,7 @@ pub fn level(robot: &Robot) -> Option<(String, String, f64)> {
 impl Controller {
     /// Relation for a controller that counts as the model does.
     #[must_use]
-    pub fn plain(robot: &Robot) -> Self {
+    pub fn from_robot(robot: &Robot) -> Self {
         let reading = |name: String| {
             let slides =
                 robot.joints.iter().any(|it| it.reading.name == name && it.kind == JointKind::Prismatic);
@@ -132,7 +132,7 @@ impl Controller {
     /// The same relation with this reference of the third axis.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] for a robot whose second and third axes are not parallel; as [`Controller::counting`].
+    /// [`ErrorKind::Option`] for a robot whose second and third axes are not parallel; as [`Controller::controller_map`].
     pub fn with_third_axis(mut self, robot: &Robot, counts: ThirdAxis) -> Result<Self> {
         let Some((second, third, factor)) = level(robot) else {
             return ErrorKind::Option.refuse(format!(
@@ -205,7 +205,7 @@ impl Controller {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if the sums cannot be separated again.
-    pub fn counting(&self) -> Result<Counting> {
+    pub fn controller_map(&self) -> Result<ControllerMap> {
         let (names, pairs) = (self.axes()?, self.pairs()?);
         let count = names.len();
         let forward = DMatrix::from_fn(count, count, |row, column| {
@@ -222,7 +222,7 @@ impl Controller {
                 back[(at, reading)] = (is_own - known) / forward[(at, at)];
             }
         }
-        Ok(Counting { names, forward, offsets, back })
+        Ok(ControllerMap { names, forward, offsets, back })
     }
 
     /// Sums in words; empty if each reading is counted by itself.
@@ -270,14 +270,14 @@ impl ControllerReading {
 
 /// Transformation of counted readings to those of the model: `r = A·c + b`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Counting {
+pub struct ControllerMap {
     names: Vec<String>,
     forward: DMatrix<f64>,
     offsets: DVector<f64>,
     back: DMatrix<f64>,
 }
 
-impl Counting {
+impl ControllerMap {
     /// Names of the counted readings, in the order of the model's axes.
     #[must_use]
     pub fn names(&self) -> &[String] {
@@ -319,7 +319,7 @@ impl Counting {
 
     /// Counted readings at the model's readings (rad, m).
     #[must_use]
-    pub fn counted(&self, readings: &[f64]) -> Vec<f64> {
+    pub fn controller_readings(&self, readings: &[f64]) -> Vec<f64> {
         let from: Vec<f64> =
             readings.iter().zip(self.offsets.iter()).map(|(it, offset)| it - offset).collect();
         self.change(&from)
@@ -327,7 +327,7 @@ impl Counting {
 
     /// Counted readings after a change of those of the model.
     #[must_use]
-    pub fn moved(&self, counted: &[f64], from: &[f64], to: &[f64]) -> Vec<f64> {
+    pub fn moved_readings(&self, counted: &[f64], from: &[f64], to: &[f64]) -> Vec<f64> {
         let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
         counted.iter().zip(self.change(&change)).map(|(it, change)| it + change).collect()
     }
@@ -370,10 +370,10 @@ mod tests {
             ("b", &[("J2", 2.0), ("J3", 1.0)], 0.0),
             ("c", &[("J3", 1.0)], -0.25),
         ]);
-        let counting = all.counting().unwrap();
+        let counting = all.controller_map().unwrap();
         assert_eq!(counting.names(), ["J1", "J2", "J3"]);
         assert_eq!(counting.readings(&[0.1, 0.2, 0.3]), [0.4, 0.7, 0.3 - 0.25]);
-        for (found, wanted) in counting.counted(&[0.4, 0.7, 0.05]).iter().zip([0.1, 0.2, 0.3]) {
+        for (found, wanted) in counting.controller_readings(&[0.4, 0.7, 0.05]).iter().zip([0.1, 0.2, 0.3]) {
             assert!((found - wanted).abs() < 1e-15);
         }
         assert_eq!(counting.change(&[0.0, 0.0, 1.0]), [0.0, -0.5, 1.0]);
@@ -383,7 +383,7 @@ mod tests {
     #[test]
     fn what_is_of_another_robot_or_no_number_is_refused() {
         let robot = elbow();
-        let plain = Controller::plain(&robot);
+        let plain = Controller::from_robot(&robot);
         assert!(plain.check(&robot).is_ok());
         let mut short = plain.clone();
         short.readings.pop();
@@ -398,11 +398,14 @@ mod tests {
     #[test]
     fn what_cannot_be_taken_apart_is_refused() {
         for readings in [
-            controller_from_rows(&[("a", &[("J1", 1.0), ("J2", 1.0)], 0.0), ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0)]),
+            controller_from_rows(&[
+                ("a", &[("J1", 1.0), ("J2", 1.0)], 0.0),
+                ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0),
+            ]),
             controller_from_rows(&[("a", &[("J1", 1.0)], 0.0), ("b", &[("J1", 1.0)], 0.0)]),
             controller_from_rows(&[("a", &[], 0.3)]),
         ] {
-            let error = readings.counting().unwrap_err().to_string();
+            let error = readings.controller_map().unwrap_err().to_string();
             assert!(error.contains("cannot be taken apart again"), "{error}");
         }
     }
@@ -411,8 +414,8 @@ mod tests {
     fn a_third_axis_from_the_level_turns_with_the_second() {
         let robot = elbow();
         let (second, third, factor) = level(&robot).unwrap();
-        let level = Controller::plain(&robot).with_third_axis(&robot, ThirdAxis::Level).unwrap();
-        let counting = level.counting().unwrap();
+        let level = Controller::from_robot(&robot).with_third_axis(&robot, ThirdAxis::Level).unwrap();
+        let counting = level.controller_map().unwrap();
         let at = |name: &str| robot.joint_reading_names().iter().position(|it| it == name).unwrap();
         let mut counted = vec![0.0; 6];
         counted[at(&second)] = 0.3;
@@ -424,7 +427,7 @@ mod tests {
         let again = level.with_third_axis(&robot, ThirdAxis::Arm).unwrap();
         assert!(again.is_plain());
         // The second and the third may start elsewhere; stated twice, the result is the same.
-        let mut shifted = Controller::plain(&robot);
+        let mut shifted = Controller::from_robot(&robot);
         for reading in &mut shifted.readings {
             reading.offset = if reading.reading == second { 0.2 } else { 0.0 };
         }

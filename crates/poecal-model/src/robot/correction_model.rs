@@ -3,22 +3,22 @@
 use nalgebra::Vector3;
 
 use super::{
-    Argument, Function, Gives, Gravity, JointKind, JointTerm, Robot, Sizes, Statics, Term, TermGroup,
-    TermKind,
+    CompliantDirections, Gravity, JointKind, JointTerm, Robot, Sizes, Statics, Term, TermArgument,
+    TermFunction, TermGroup, TermKind,
 };
 
 /// Extent of the model of errors beyond geometry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extent {
+pub struct CorrectionExtent {
     /// Highest order of the harmonics of gears and encoders.
     pub orders: u8,
     /// Compliant directions of bearings and links. If they are all directions, first harmonics are among their terms.
-    pub gives: Gives,
+    pub gives: CompliantDirections,
 }
 
-impl Default for Extent {
+impl Default for CorrectionExtent {
     fn default() -> Self {
-        Extent { orders: 2, gives: Gives::Tilting }
+        CorrectionExtent { orders: 2, gives: CompliantDirections::Tilting }
     }
 }
 
@@ -37,17 +37,17 @@ pub struct CorrectionModel {
 impl CorrectionModel {
     /// Model of a robot with gravity in a direction (base frame); joints that do not move have no terms of their own values.
     #[must_use]
-    pub fn new(robot: &Robot, gravity: Vector3<f64>, moves: &[bool], extent: Extent) -> Self {
+    pub fn new(robot: &Robot, gravity: Vector3<f64>, moves: &[bool], extent: CorrectionExtent) -> Self {
         let mut robot = robot.clone();
         robot.gravity = Some(Gravity::of_unit_weights(&robot, gravity));
         let all: Vec<usize> = (0..robot.joints.len()).collect();
-        let (mut robot, places) = robot.giving(&all, extent.gives);
+        let (mut robot, places) = robot.with_compliance(&all, extent.gives);
         let (mut terms, mut groups) = (Vec::new(), Vec::new());
         let Some(statics) = Statics::new(&robot) else { return CorrectionModel { robot, places, groups } };
         for (joint, it) in robot.joints.iter().enumerate() {
             let of = places.iter().position(|&place| place == it.give_of.unwrap_or(joint));
             let is_moving = of.is_some_and(|at| moves.get(at) == Some(&true));
-            for (term, group, share) in Corrected::new(&robot, &statics, extent, joint).terms(is_moving) {
+            for (term, group, share) in LoadedJoint::new(&robot, &statics, extent, joint).terms(is_moving) {
                 let is_known = robot.terms.iter().any(|it| it.joint == joint && it.term == term);
                 if !is_known {
                     terms.push(JointTerm { joint, term, coefficient: 0.0 });
@@ -63,7 +63,7 @@ impl CorrectionModel {
     #[must_use]
     pub fn with_sizes(&self, sizes: &Sizes) -> Self {
         let mut kept = self.clone();
-        let corrected = kept.robot.terms.split_off(self.own());
+        let corrected = kept.robot.terms.split_off(self.own_terms());
         let corrected = corrected.into_iter().zip(self.groups.iter().copied());
         let (terms, groups): (Vec<_>, _) = corrected.filter(|(_, (group, _))| sizes[*group] > 0.0).unzip();
         kept.robot.terms.extend(terms);
@@ -72,7 +72,7 @@ impl CorrectionModel {
     }
 
     /// Number of terms of the model itself.
-    fn own(&self) -> usize {
+    fn own_terms(&self) -> usize {
         self.robot.terms.len() - self.groups.len()
     }
 
@@ -83,7 +83,7 @@ impl CorrectionModel {
 
     /// Joints and terms of the groups.
     pub fn terms(&self) -> impl Iterator<Item = (usize, Term)> {
-        self.robot.terms.iter().skip(self.own()).map(|it| (it.joint, it.term))
+        self.robot.terms.iter().skip(self.own_terms()).map(|it| (it.joint, it.term))
     }
 
     /// Compliant joints.
@@ -99,10 +99,10 @@ impl CorrectionModel {
 }
 
 /// A joint or a compliant joint of a robot in gravity, as input of the table of terms.
-struct Corrected<'a> {
+struct LoadedJoint<'a> {
     robot: &'a Robot,
     statics: &'a Statics<'a>,
-    extent: Extent,
+    extent: CorrectionExtent,
     joint: usize,
     is_give: bool,
     /// True if it is a prismatic compliant joint.
@@ -113,12 +113,12 @@ struct Corrected<'a> {
     carried: Vec<usize>,
 }
 
-impl<'a> Corrected<'a> {
-    fn new(robot: &'a Robot, statics: &'a Statics<'a>, extent: Extent, joint: usize) -> Self {
+impl<'a> LoadedJoint<'a> {
+    fn new(robot: &'a Robot, statics: &'a Statics<'a>, extent: CorrectionExtent, joint: usize) -> Self {
         let own = &robot.joints[joint];
         let is_give = own.give_of.is_some();
         let weights = 0..robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
-        Corrected {
+        LoadedJoint {
             robot,
             statics,
             extent,
@@ -132,50 +132,55 @@ impl<'a> Corrected<'a> {
 
     /// Terms, each with its group and its share of the variance of that; those of its own value only if it moves.
     fn terms(&self, is_moving: bool) -> Vec<(Term, TermGroup, f64)> {
-        let arguments =
-            [Argument::Masses, Argument::Weight, Argument::Payload, Argument::Factor, Argument::OwnValue];
-        let arguments = arguments.into_iter().filter(|it| is_moving || *it != Argument::OwnValue);
+        let arguments = [
+            TermArgument::Masses,
+            TermArgument::Weight,
+            TermArgument::Payload,
+            TermArgument::Factor,
+            TermArgument::OwnValue,
+        ];
+        let arguments = arguments.into_iter().filter(|it| is_moving || *it != TermArgument::OwnValue);
         let mut found = Vec::new();
         for (argument, number) in
             arguments.flat_map(|it| self.numbers(it).into_iter().map(move |at| (it, at)))
         {
             let is_of =
                 |kind: &TermKind| kind.row().argument == argument && kind.row().is_numbered() == (number > 0);
-            let terms = TermKind::ALL.into_iter().filter(is_of).map(|kind| kind.numbered(number));
+            let terms = TermKind::ALL.into_iter().filter(is_of).map(|kind| kind.with_number(number));
             found.extend(terms.filter_map(|term| Some((term, self.group(term)?, self.share(term)))));
         }
         found
     }
 
     /// Numbers of its terms of this argument, 0 for those without: a prismatic joint has only those of its compliant joints under weight.
-    fn numbers(&self, argument: Argument) -> Vec<usize> {
+    fn numbers(&self, argument: TermArgument) -> Vec<usize> {
         let is_loaded = self.is_give || self.turns;
         let counted = |index: usize| index + 1;
         match argument {
-            Argument::Masses if is_loaded && self.statics.carries_masses(self.joint) => vec![0],
+            TermArgument::Masses if is_loaded && self.statics.carries_masses(self.joint) => vec![0],
             // All weights act alike where a link shifts.
-            Argument::Weight if self.shifts => {
+            TermArgument::Weight if self.shifts => {
                 self.carried.last().copied().map(counted).into_iter().collect()
             }
-            Argument::Weight if is_loaded => self.carried.iter().copied().map(counted).collect(),
-            Argument::Payload if is_loaded => {
+            TermArgument::Weight if is_loaded => self.carried.iter().copied().map(counted).collect(),
+            TermArgument::Payload if is_loaded => {
                 let last = self.robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
                 let is_carried = self.carried.last().is_some_and(|it| counted(*it) == last);
                 self.robot.payloads().filter(|_| is_carried).map(counted).collect()
             }
-            Argument::Factor if self.turns => self.factors().map(counted).collect(),
-            Argument::OwnValue if self.turns => match (self.is_give, self.extent.gives) {
+            TermArgument::Factor if self.turns => self.factors().map(counted).collect(),
+            TermArgument::OwnValue if self.turns => match (self.is_give, self.extent.gives) {
                 (false, _) => (0..=usize::from(self.extent.orders)).collect(),
-                (true, Gives::Tilting) => vec![2],
-                (true, Gives::All) => vec![1, 2],
+                (true, CompliantDirections::Tilting) => vec![2],
+                (true, CompliantDirections::All) => vec![1, 2],
             },
-            Argument::Nothing
-            | Argument::OwnValue
-            | Argument::Masses
-            | Argument::Weight
-            | Argument::OtherJoint
-            | Argument::Factor
-            | Argument::Payload => Vec::new(),
+            TermArgument::Nothing
+            | TermArgument::OwnValue
+            | TermArgument::Masses
+            | TermArgument::Weight
+            | TermArgument::OtherJoint
+            | TermArgument::Factor
+            | TermArgument::Payload => Vec::new(),
         }
     }
 
@@ -185,31 +190,31 @@ impl<'a> Corrected<'a> {
         let is_own =
             |of: &str| of.is_empty() || [&joint.name, &joint.reading.name].into_iter().any(|it| it == of);
         let all = self.robot.factors.iter().enumerate();
-        all.filter(move |(_, it)| !it.is_payload() && it.approached().is_none_or(is_own))
+        all.filter(move |(_, it)| !it.is_payload() && it.approached_joint().is_none_or(is_own))
             .map(|(index, _)| index)
     }
 
     /// Group of a term, if it is among corrections; of a factor by its name.
     fn group(&self, term: Term) -> Option<TermGroup> {
         let group = term.kind().row().groups[usize::from(self.is_give) + usize::from(self.shifts)]?;
-        let factor = self.robot.factors.get(term.index()).filter(|_| term.argument() == Argument::Factor);
+        let factor = self.robot.factors.get(term.index()).filter(|_| term.argument() == TermArgument::Factor);
         Some(factor.map_or(group, |it| it.group()))
     }
 
     /// Share of a term in the variance of its group. Nominal masses are estimates: half of the prior of a moment.
     fn share(&self, term: Term) -> f64 {
-        let is_moment = matches!(term.kind().row().function, Function::Identity) && !self.shifts;
+        let is_moment = matches!(term.kind().row().function, TermFunction::Identity) && !self.shifts;
         let believed = if self.statics.carries_masses(self.joint) { 0.5 } else { 1.0 };
         match term.argument() {
-            Argument::Masses if is_moment => believed,
-            Argument::Weight if is_moment => believed / self.carried.len().max(1) as f64,
-            Argument::Nothing
-            | Argument::OwnValue
-            | Argument::Masses
-            | Argument::Weight
-            | Argument::OtherJoint
-            | Argument::Factor
-            | Argument::Payload => 1.0,
+            TermArgument::Masses if is_moment => believed,
+            TermArgument::Weight if is_moment => believed / self.carried.len().max(1) as f64,
+            TermArgument::Nothing
+            | TermArgument::OwnValue
+            | TermArgument::Masses
+            | TermArgument::Weight
+            | TermArgument::OtherJoint
+            | TermArgument::Factor
+            | TermArgument::Payload => 1.0,
         }
     }
 }
@@ -221,8 +226,8 @@ mod tests {
 
     #[test]
     fn each_joint_has_two_gives_and_each_term_a_group() {
-        let model = CorrectionModel::new(&elbow(), -Vector3::z(), &[true; 6], Extent::default());
+        let model = CorrectionModel::new(&elbow(), -Vector3::z(), &[true; 6], CorrectionExtent::default());
         assert_eq!((model.robot.joints.len(), model.places[1]), (18, 3));
-        assert!(model.groups.iter().any(|it| it.0 == TermGroup::Sag) && model.own() == 0);
+        assert!(model.groups.iter().any(|it| it.0 == TermGroup::Sag) && model.own_terms() == 0);
     }
 }

@@ -2,8 +2,8 @@
 
 use std::str::FromStr;
 
-use super::{Gives, Sizes, TermGroup};
-use poecal_numerics::error::nearest;
+use super::{CompliantDirections, Sizes, TermGroup};
+use poecal_numerics::error::nearest_word;
 
 /// Terms that a calibration fits beside the screws, and their sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,7 +11,7 @@ pub enum Corrections {
     /// Those that predict held-out rows best; none if geometry alone does as well.
     #[default]
     Auto,
-    /// The same choice with bearings and links compliant in all directions ([`Gives::All`]).
+    /// The same choice with bearings and links compliant in all directions ([`CompliantDirections::All`]).
     All,
     /// No terms.
     Off,
@@ -22,10 +22,10 @@ pub enum Corrections {
 impl Corrections {
     /// Compliant directions of bearings and links.
     #[must_use]
-    pub fn gives(&self) -> Gives {
+    pub fn gives(&self) -> CompliantDirections {
         match self {
-            Corrections::Auto | Corrections::Off => Gives::Tilting,
-            Corrections::All => Gives::All,
+            Corrections::Auto | Corrections::Off => CompliantDirections::Tilting,
+            Corrections::All => CompliantDirections::All,
             Corrections::Sizes(sizes) => sizes.gives(),
         }
     }
@@ -50,7 +50,7 @@ impl FromStr for Corrections {
             };
             let names = || TermGroup::ALL.into_iter().map(TermGroup::name);
             let Some(group) = TermGroup::ALL.into_iter().find(|group| group.name() == name) else {
-                let near = nearest(name, names()).map(|near| format!("; did you mean `{near}`?"));
+                let near = nearest_word(name, names()).map(|near| format!("; did you mean `{near}`?"));
                 let known = names().collect::<Vec<_>>().join(", ");
                 return Err(format!(
                     "found `{name}`, expected auto, all, off, or some of {known}, each with a size like sag=1e-3{}",

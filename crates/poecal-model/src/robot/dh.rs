@@ -8,7 +8,7 @@ use poecal_numerics::error::Result;
 
 /// Convention of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DhConvention {
+pub enum DhTableConvention {
     /// `A_i = Rz(θ_i) Tz(d_i) Tx(a_i) Rx(α_i)`: the joint turns about z of the *previous* frame.
     Standard,
     /// `A_i = Rx(α_i) Tx(a_i) Rz(θ_i) Tz(d_i)` (Craig, with α and a of the same row): the joint turns about z of its *own* frame.
@@ -41,7 +41,7 @@ impl Robot {
     /// As [`Robot::new`].
     pub fn from_dh(
         name: &str,
-        convention: DhConvention,
+        convention: DhTableConvention,
         rows: &[DhRow],
         base_from_first: Pose,
         last_from_tip: Pose,
@@ -52,15 +52,15 @@ impl Robot {
             let along_z = Pose::new(rotation::about(2, row.theta_rad), Vector3::new(0.0, 0.0, row.d_m));
             let along_x = Pose::new(rotation::about(0, row.alpha_rad), Vector3::new(row.a_m, 0.0, 0.0));
             let base_from_joint = match convention {
-                DhConvention::Standard => base_from_frame,
-                DhConvention::Modified => base_from_frame * along_x,
+                DhTableConvention::Standard => base_from_frame,
+                DhTableConvention::Modified => base_from_frame * along_x,
             };
             let axis = base_from_joint.rotation.column(2).into_owned();
             let screw = row.kind.screw(&axis, &base_from_joint.translation);
             joints.push(Joint { frame: base_from_joint, ..Joint::with_screw(&row.name, row.kind, screw) });
             let base_from_row = match convention {
-                DhConvention::Standard => base_from_joint * along_z * along_x,
-                DhConvention::Modified => base_from_joint * along_z,
+                DhTableConvention::Standard => base_from_joint * along_z * along_x,
+                DhTableConvention::Modified => base_from_joint * along_z,
             };
             base_from_frame =
                 if row.fixed == Pose::identity() { base_from_row } else { base_from_row * row.fixed };
@@ -85,7 +85,7 @@ mod tests {
             fixed: Pose::identity(),
         };
         let rows = [("joint1", 0.3, 0.0), ("joint2", 0.2, 0.1)].map(row);
-        let (convention, none) = (DhConvention::Standard, Pose::identity());
+        let (convention, none) = (DhTableConvention::Standard, Pose::identity());
         let robot = Robot::from_dh("planar", convention, &rows, none, none).unwrap();
         let tip = robot.forward_kinematics(&[0.0, 0.0]).translation;
         assert!((tip - Vector3::new(0.5, 0.0, 0.1)).norm() < 1e-15);

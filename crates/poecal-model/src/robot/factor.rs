@@ -28,14 +28,14 @@ impl FactorReading {
 
     /// Joint whose side of approach it states, empty for all joints; `None` for another factor.
     #[must_use]
-    pub fn approached(&self) -> Option<&str> {
+    pub fn approached_joint(&self) -> Option<&str> {
         Some(self.name.strip_prefix(Self::APPROACH)?.trim_start_matches(['_', '.', ' ']))
     }
 
     /// Group of the terms that depend on it.
     #[must_use]
     pub fn group(&self) -> TermGroup {
-        match self.approached() {
+        match self.approached_joint() {
             Some(_) => TermGroup::Backlash,
             None if self.is_payload() => TermGroup::Payload,
             None => TermGroup::Factors,

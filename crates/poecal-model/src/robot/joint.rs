@@ -46,18 +46,18 @@ impl JointKind {
 /// Lower and upper limit of a joint's value, radians or metres.
 ///
 /// ```
-/// let limits = poecal_model::robot::Limits { lower: -3.1, upper: 3.1 };
+/// let limits = poecal_model::robot::JointLimits { lower: -3.1, upper: 3.1 };
 /// assert!(limits.lower < limits.upper);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
+pub struct JointLimits {
     /// Smallest value.
     pub lower: f64,
     /// Largest value.
     pub upper: f64,
 }
 
-impl Limits {
+impl JointLimits {
     /// Stroke of a prismatic joint beyond which its limits are placeholders: files demand limits even if none are known.
     pub const PLACEHOLDER_M: f64 = 100.0;
     /// One turn (rad), with room for rounded numbers.
@@ -67,9 +67,9 @@ impl Limits {
 
     /// Limits as files state them; `None` for an empty range, as exporters write unknown ones, and for numbers that are no limits.
     #[must_use]
-    pub fn between(lower: f64, upper: f64) -> Option<Self> {
+    pub fn from_bounds(lower: f64, upper: f64) -> Option<Self> {
         let is_limit = |it: f64| it.abs() < Self::NONE_BEYOND;
-        (lower < upper && is_limit(lower) && is_limit(upper)).then_some(Limits { lower, upper })
+        (lower < upper && is_limit(lower) && is_limit(upper)).then_some(JointLimits { lower, upper })
     }
 }
 
@@ -77,7 +77,7 @@ impl Limits {
 /// joints (theory.md §2 (7)).
 ///
 /// ```
-/// let own = poecal_model::robot::Reading::own("joint1");
+/// let own = poecal_model::robot::Reading::from_name("joint1");
 /// assert_eq!(own.value(0.3), 0.3);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -96,7 +96,7 @@ pub struct Reading {
 impl Reading {
     /// A joint with a reading of its own.
     #[must_use]
-    pub fn own(name: &str) -> Self {
+    pub fn from_name(name: &str) -> Self {
         Reading { name: name.to_owned(), multiplier: 1.0, offset: 0.0 }
     }
 
@@ -160,7 +160,7 @@ pub struct Joint {
     /// `base_from_joint` at zero configuration (URDF: the joint's and its child link's frame).
     pub frame: Pose,
     /// Limits of the value.
-    pub limits: Option<Limits>,
+    pub limits: Option<JointLimits>,
     /// Joint value as a function of a reading.
     pub reading: Reading,
     /// Tolerance of its axis, if it differs from the common one.
@@ -196,7 +196,7 @@ impl Joint {
             screw,
             frame: axis_frame(&screw),
             limits: None,
-            reading: Reading::own(name),
+            reading: Reading::from_name(name),
             tolerance: None,
             stands_on: None,
             give_of: None,

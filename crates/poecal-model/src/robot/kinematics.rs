@@ -29,7 +29,7 @@ impl Robot {
         if self.terms.is_empty() {
             return;
         }
-        let found = TermFunctions::new(self).at(values, factors);
+        let found = TermFunctions::new(self).evaluate(values, factors);
         let mut more = vec![0.0; values.len()];
         for (term, basis) in self.terms.iter().zip(found) {
             if let Some(more) = more.get_mut(term.joint) {
@@ -51,7 +51,8 @@ impl Robot {
         let path = self.joints_to(self.tip_body());
         let (joints, indices) = self.path(&path, &self.reading_indices());
         let width = self.reading_names().len().max(1);
-        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::from_screw(&it.screw)).collect();
+        let exponentials: Vec<JointExponential> =
+            joints.iter().map(|it| JointExponential::from_screw(&it.screw)).collect();
         let mut values = vec![[0.0; WIDTH]; joints.len()];
         readings.chunks(WIDTH * width).flat_map(move |some| {
             let some = some.chunks_exact(width);
@@ -99,7 +100,8 @@ impl Robot {
     #[must_use]
     pub fn motion_of(&self, body: Body, joint_values: &[f64]) -> Pose {
         let (joints, values) = self.path(&self.joints_to(body), joint_values);
-        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::from_screw(&it.screw)).collect();
+        let exponentials: Vec<JointExponential> =
+            joints.iter().map(|it| JointExponential::from_screw(&it.screw)).collect();
         let values: Vec<[f64; 1]> = values.into_iter().map(|value| [value]).collect();
         let rows = product(&exponentials, &values);
         Pose::from_rows(|i, j| rows[i][j][0])
@@ -107,17 +109,17 @@ impl Robot {
 }
 
 /// Poses of several configurations, by rows: three directions and a translation.
-type Rows<const N: usize> = [[[f64; N]; 4]; 3];
+type PoseRows<const N: usize> = [[[f64; N]; 4]; 3];
 
 /// Motion of a joint, `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` for a prismatic joint: theory.md §1 (2a).
 #[derive(Clone, Copy, Debug)]
-struct Exponential {
+struct JointExponential {
     slides: bool,
     first: [[f64; 4]; 3],
     second: [[f64; 4]; 3],
 }
 
-impl Exponential {
+impl JointExponential {
     fn from_screw(screw: &Screw) -> Self {
         let rows = |turn: &Matrix3<f64>, shift: &Vector3<f64>| {
             std::array::from_fn(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)], shift[i]])
@@ -125,18 +127,18 @@ impl Exponential {
         if screw.is_prismatic() {
             let none = Matrix3::zeros();
             let (first, second) = (rows(&none, &screw.v()), rows(&none, &Vector3::zeros()));
-            return Exponential { slides: true, first, second };
+            return JointExponential { slides: true, first, second };
         }
         let (w, point) = (screw.w(), screw.w().cross(&screw.v()));
         let (first, second) = (hat(&w), w * w.transpose() - Matrix3::identity());
         let (first, second) = (rows(&first, &-(first * point)), rows(&second, &-(second * point)));
-        Exponential { slides: false, first, second }
+        JointExponential { slides: false, first, second }
     }
 
     /// Moves poses by the joint's motion. No product is fused with a sum, so that the bits are the same by all instructions. `1 - cos θ` is
     /// added to numbers of about one, so that its rounding at small angles is negligible.
     #[inline(always)]
-    fn advance<const N: usize>(&self, rows: &mut Rows<N>, values: &[f64; N], found: &[(f64, f64); N]) {
+    fn advance<const N: usize>(&self, rows: &mut PoseRows<N>, values: &[f64; N], found: &[(f64, f64); N]) {
         let (mut first, mut second) = (*values, [0.0; N]);
         if !self.slides {
             for l in 0..N {
@@ -163,11 +165,11 @@ impl Exponential {
 }
 
 /// Product of the motions of all joints at their values: theory.md §2 (6).
-fn product<const N: usize>(joints: &[Exponential], values: &[[f64; N]]) -> Rows<N> {
+fn product<const N: usize>(joints: &[JointExponential], values: &[[f64; N]]) -> PoseRows<N> {
     let mut found = vec![[(0.0, 0.0); N]; values.len()];
-    lanes::cosines_and_sines(SimdLevel::best(), values.as_flattened(), found.as_flattened_mut());
+    lanes::cosines_and_sines(SimdLevel::best_level(), values.as_flattened(), found.as_flattened_mut());
     let one = |i: usize, j: usize| [f64::from(u8::from(i == j)); N];
-    let mut rows: Rows<N> = std::array::from_fn(|i| std::array::from_fn(|j| one(i, j)));
+    let mut rows: PoseRows<N> = std::array::from_fn(|i| std::array::from_fn(|j| one(i, j)));
     lanes::by_best(
         #[inline(always)]
         || {

@@ -6,12 +6,12 @@
 
 mod arm;
 mod body;
+mod compliance;
 mod controller;
 mod correction_model;
 mod corrections;
 mod dh;
 mod factor;
-mod give;
 mod gravity;
 mod joint;
 mod kinematics;
@@ -22,17 +22,17 @@ mod term;
 mod zeros;
 
 pub use body::{Body, MEASURED, Mount};
+pub use compliance::CompliantDirections;
 pub use controller::{
-    Controller, ControllerColumn, ControllerReading, Counting, ThirdAxis, level, sum_words,
+    Controller, ControllerColumn, ControllerMap, ControllerReading, ThirdAxis, level, sum_words,
 };
-pub use correction_model::{CorrectionModel, Extent};
+pub use correction_model::{CorrectionExtent, CorrectionModel};
 pub use corrections::Corrections;
-pub use dh::{DhConvention, DhRow};
+pub use dh::{DhRow, DhTableConvention};
 pub use factor::FactorReading;
-pub use give::Gives;
 pub use gravity::{Gravity, GravityDirection, Mass, Weight};
-pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
-pub use poecal_arm::{Argument, Function, Term, TermGroup, TermKind};
+pub use joint::{Joint, JointKind, JointLimits, Reading, Tolerance};
+pub use poecal_arm::{Term, TermArgument, TermFunction, TermGroup, TermKind};
 pub use reading_kind::ReadingKind;
 pub use sizes::Sizes;
 pub use statics::{Moments, Statics};
@@ -299,7 +299,7 @@ impl Robot {
             .filter(|joint| joint.kind == JointKind::Prismatic)
             .filter_map(|joint| joint.limits)
             .map(|limits| limits.upper - limits.lower)
-            .filter(|span| *span < Limits::PLACEHOLDER_M)
+            .filter(|span| *span < JointLimits::PLACEHOLDER_M)
             .sum();
         self.arm_m() + slides
     }
@@ -310,9 +310,9 @@ impl Robot {
     #[must_use]
     pub fn placeholder_limits(&self) -> Option<String> {
         let turning = self.joints.iter().filter(|joint| joint.kind == JointKind::Revolute);
-        let limits: Vec<Limits> = turning.map(|joint| joint.limits).collect::<Option<_>>()?;
+        let limits: Vec<JointLimits> = turning.map(|joint| joint.limits).collect::<Option<_>>()?;
         let first = *limits.first().filter(|_| limits.len() > 2)?;
-        let is_wide = first.lower < -Limits::TURN_RAD && first.upper > Limits::TURN_RAD;
+        let is_wide = first.lower < -JointLimits::TURN_RAD && first.upper > JointLimits::TURN_RAD;
         (is_wide && limits.iter().all(|it| *it == first)).then(|| {
             format!(
                 "every joint has the limits {:.0} to {:.0} deg, which are placeholders: state the limits of the robot in the model",
@@ -329,7 +329,7 @@ impl Robot {
             let mut own = self.joints.iter().filter(|joint| joint.reading.name == *name);
             own.any(|joint| {
                 let span = joint.limits.map_or(0.0, |it| it.upper - it.lower);
-                joint.kind == JointKind::Revolute && span > Limits::TURN_RAD
+                joint.kind == JointKind::Revolute && span > JointLimits::TURN_RAD
             })
         };
         self.reading_names().iter().filter(|name| is_beyond(name)).cloned().collect()

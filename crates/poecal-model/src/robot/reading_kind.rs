@@ -35,7 +35,7 @@ impl ReadingKind {
 
     /// Value in that unit.
     #[must_use]
-    pub fn shown(self, value: f64) -> f64 {
+    pub fn in_shown_unit(self, value: f64) -> f64 {
         match self {
             ReadingKind::Angle => value.to_degrees(),
             ReadingKind::Length => 1e3 * value,
@@ -60,9 +60,9 @@ mod tests {
     #[test]
     fn angles_are_shown_in_degrees_and_factors_as_they_are() {
         assert_eq!(
-            (ReadingKind::Angle.symbol(), ReadingKind::Angle.shown(0.5f64.to_radians())),
+            (ReadingKind::Angle.symbol(), ReadingKind::Angle.in_shown_unit(0.5f64.to_radians())),
             ("deg", 0.5)
         );
-        assert_eq!(ReadingKind::Factor.shown(21.5), 21.5);
+        assert_eq!(ReadingKind::Factor.in_shown_unit(21.5), 21.5);
     }
 }

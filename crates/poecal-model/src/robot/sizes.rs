@@ -4,7 +4,7 @@ use std::ops::{Index, IndexMut};
 
 use poecal_arm::TermGroup;
 
-use super::Gives;
+use super::CompliantDirections;
 
 const COUNT: usize = TermGroup::ALL.len();
 
@@ -35,9 +35,13 @@ impl Sizes {
 
     /// Compliant directions of bearings and links that have terms of these sizes.
     #[must_use]
-    pub fn gives(&self) -> Gives {
+    pub fn gives(&self) -> CompliantDirections {
         let slides = |group: TermGroup| group.is_of_lengths() && self[group] > 0.0;
-        if TermGroup::ALL.into_iter().any(slides) { Gives::All } else { Gives::Tilting }
+        if TermGroup::ALL.into_iter().any(slides) {
+            CompliantDirections::All
+        } else {
+            CompliantDirections::Tilting
+        }
     }
 
     /// The larger of both, group by group.

@@ -1,9 +1,9 @@
 //! Moments of weights about joints.
 
 use nalgebra::Vector3;
-use poecal_arm::{Pull, PulledWeight};
+use poecal_arm::{GravityTorque, PulledWeight};
 
-use super::{Argument, Body, Gravity, JointKind, Mass, Robot, Term, Weight};
+use super::{Body, Gravity, JointKind, Mass, Robot, Term, TermArgument, Weight};
 use poecal_arm::lie::Pose;
 
 /// Lever below which a weight has no moment, as a share of the arm: a tool on the last axis.
@@ -122,15 +122,24 @@ impl<'a> Statics<'a> {
     /// True if the argument of a term has a moment about a joint in any configuration.
     pub fn is_pulled(&self, joint: usize, term: Term) -> bool {
         match term.argument() {
-            Argument::Masses => self.carries_masses(joint),
-            Argument::Weight => self.is_carried(joint, term.index()),
-            Argument::Payload => self.is_carried(joint, self.gravity.weights.len().saturating_sub(1)),
-            Argument::Nothing | Argument::OwnValue | Argument::OtherJoint | Argument::Factor => false,
+            TermArgument::Masses => self.carries_masses(joint),
+            TermArgument::Weight => self.is_carried(joint, term.index()),
+            TermArgument::Payload => self.is_carried(joint, self.gravity.weights.len().saturating_sub(1)),
+            TermArgument::Nothing
+            | TermArgument::OwnValue
+            | TermArgument::OtherJoint
+            | TermArgument::Factor => false,
         }
     }
 
     /// Torque model of a joint with these coefficients of the weights and of all masses, where these joints are the moving ones of an arm.
-    pub(crate) fn pull(&self, joint: usize, moving: &[usize], sags: &[f64], of_masses: f64) -> Option<Pull> {
+    pub(crate) fn pull(
+        &self,
+        joint: usize,
+        moving: &[usize],
+        sags: &[f64],
+        of_masses: f64,
+    ) -> Option<GravityTorque> {
         let after = |body: Body| {
             let carrying = self.robot.joints_to(body);
             moving.iter().take_while(|it| carrying.contains(it)).count()
@@ -148,7 +157,7 @@ impl<'a> Statics<'a> {
             pulled.map(|(size, body, place)| PulledWeight { after: after(body), size, place }).collect();
         let (screw, place) = self.gravity.axes.get(joint)?;
         let before = self.robot.body_before(joint);
-        (!weights.is_empty()).then(|| Pull {
+        (!weights.is_empty()).then(|| GravityTorque {
             after: after(before),
             slides: self.robot.joints[joint].kind == JointKind::Prismatic,
             direction: screw.direction(),

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use poecal_arm::{Argument, Term};
+use poecal_arm::{Term, TermArgument};
 use serde::{Deserialize, Serialize};
 
 use super::{JointKind, Moments, Robot, Statics};
@@ -46,16 +46,18 @@ impl Robot {
             return Some(format!("one of the {joints} joints and {factors} factors"));
         }
         match term.argument() {
-            Argument::Masses if self.masses.is_empty() => Some("a robot with masses".to_owned()),
-            Argument::Weight | Argument::Payload if weights == 0 => Some("a robot with weights".to_owned()),
-            Argument::Weight if term.index() >= weights => Some(format!("one of the {weights} weights")),
-            Argument::Nothing
-            | Argument::OwnValue
-            | Argument::Masses
-            | Argument::Weight
-            | Argument::OtherJoint
-            | Argument::Factor
-            | Argument::Payload => None,
+            TermArgument::Masses if self.masses.is_empty() => Some("a robot with masses".to_owned()),
+            TermArgument::Weight | TermArgument::Payload if weights == 0 => {
+                Some("a robot with weights".to_owned())
+            }
+            TermArgument::Weight if term.index() >= weights => Some(format!("one of the {weights} weights")),
+            TermArgument::Nothing
+            | TermArgument::OwnValue
+            | TermArgument::Masses
+            | TermArgument::Weight
+            | TermArgument::OtherJoint
+            | TermArgument::Factor
+            | TermArgument::Payload => None,
         }
     }
 }
@@ -84,13 +86,13 @@ impl<'a> Situation<'a> {
         let value = |of: &[f64], at: usize| of.get(at).copied().unwrap_or_default();
         let moment = |of: &dyn Fn(&Moments) -> f64| self.moments.map_or(0.0, of);
         let x = match term.argument() {
-            Argument::Nothing => 0.0,
-            Argument::OwnValue => value(self.values, joint),
-            Argument::OtherJoint => value(self.values, term.index()),
-            Argument::Masses => moment(&|it| it.of_masses(joint)),
-            Argument::Weight => moment(&|it| it.moment(joint, term.index())),
-            Argument::Factor => value(self.factors, term.index()),
-            Argument::Payload => value(self.factors, term.index()) * moment(&|it| it.of_last(joint)),
+            TermArgument::Nothing => 0.0,
+            TermArgument::OwnValue => value(self.values, joint),
+            TermArgument::OtherJoint => value(self.values, term.index()),
+            TermArgument::Masses => moment(&|it| it.of_masses(joint)),
+            TermArgument::Weight => moment(&|it| it.moment(joint, term.index())),
+            TermArgument::Factor => value(self.factors, term.index()),
+            TermArgument::Payload => value(self.factors, term.index()) * moment(&|it| it.of_last(joint)),
         };
         let [found, _] = term.function(x);
         found
@@ -111,7 +113,7 @@ impl<'a> TermFunctions<'a> {
     }
 
     /// Functions at these values of all joints and of the factors, in the order of the robot's terms.
-    pub(crate) fn at(&mut self, values: &[f64], factors: &[f64]) -> Vec<f64> {
+    pub(crate) fn evaluate(&mut self, values: &[f64], factors: &[f64]) -> Vec<f64> {
         let mut found = vec![0.0; self.robot.terms.len()];
         self.write(values, factors, &mut found);
         found

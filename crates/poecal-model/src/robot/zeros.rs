@@ -24,7 +24,7 @@ impl Robot {
             let offset: f64 = own.map(|it: &JointTerm| it.coefficient).sum();
             let before = of(&motions, self.body_before(index).joint());
             let motion = before * joint.screw.exp(offset);
-            joint.screw = joint.screw.transformed(&before);
+            joint.screw = joint.screw.transform(&before);
             joint.frame = (motion * joint.frame).orthonormalized();
             motions.push(motion);
         }

@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::random;
-use crate::robot::{JointKind, Limits, ReadingKind, Robot};
+use crate::robot::{JointKind, JointLimits, ReadingKind, Robot};
 
 /// Configurations of a robot: the range of each reading (±π and ±0.5 m without limits; for a factor its reference).
 ///
@@ -19,7 +19,7 @@ use crate::robot::{JointKind, Limits, ReadingKind, Robot};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configurations {
-    /// Kind, least and greatest value of each reading.
+    /// SessionKind, least and greatest value of each reading.
     readings: Vec<(ReadingKind, f64, f64)>,
 }
 
@@ -34,7 +34,7 @@ impl Configurations {
     pub fn random(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let one = |range: &(ReadingKind, f64, f64)| {
             let (_, lower, upper) = *range;
-            stepped(range, lower + (upper - lower).max(0.0) * random::uniform(generator))
+            round_to_step(range, lower + (upper - lower).max(0.0) * random::uniform_number(generator))
         };
         self.readings.iter().map(one).collect()
     }
@@ -42,7 +42,7 @@ impl Configurations {
     /// The same configurations with ranges that keep a distance from both ends, as far as there is room: revolute joints in radians and
     /// prismatic ones in metres.
     #[must_use]
-    pub fn within(mut self, margin: [f64; 2]) -> Self {
+    pub fn shrink_ranges(mut self, margin: [f64; 2]) -> Self {
         for (kind, lower, upper) in &mut self.readings {
             let by = match kind {
                 ReadingKind::Angle => margin[0],
@@ -61,7 +61,7 @@ impl Configurations {
     /// The same configurations with the usual margin and within a turn: those that a robot is asked to reach.
     #[must_use]
     pub fn to_measure(self) -> Self {
-        self.within(Self::MARGIN).within_a_turn()
+        self.shrink_ranges(Self::MARGIN).within_a_turn()
     }
 
     /// The same configurations with readings of revolute joints within one turn, about zero as far as the range allows: further turns are
@@ -80,17 +80,17 @@ impl Configurations {
 
     /// Configuration within the ranges that is nearest to one, in steps as those of [`Configurations::random`].
     #[must_use]
-    pub fn nearest(&self, readings: &[f64]) -> Vec<f64> {
+    pub fn nearest_to(&self, readings: &[f64]) -> Vec<f64> {
         let one = |(range, reading): (&(ReadingKind, f64, f64), &f64)| {
             let &(kind, lower, upper) = range;
-            let found = stepped(range, reading.min(upper).max(lower));
+            let found = round_to_step(range, reading.min(upper).max(lower));
             // At a limit that is no step, it is the step before it.
             let step = if kind == ReadingKind::Angle { 1e-4_f64.to_radians() } else { 1e-6 };
             let inside = found.min(upper - step).max(lower + step);
             if kind == ReadingKind::Factor || upper - lower < 2.0 * step {
                 found
             } else {
-                stepped(range, inside)
+                round_to_step(range, inside)
             }
         };
         self.readings.iter().zip(readings).map(one).collect()
@@ -107,7 +107,7 @@ impl Configurations {
 }
 
 /// A value within a range in steps of 0.0001° and 0.001 mm, if a step is within it.
-fn stepped(&(kind, lower, upper): &(ReadingKind, f64, f64), value: f64) -> f64 {
+fn round_to_step(&(kind, lower, upper): &(ReadingKind, f64, f64), value: f64) -> f64 {
     let stepped = match kind {
         ReadingKind::Angle => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
         ReadingKind::Length => (value * 1e6).round() / 1e3 / 1e3,
@@ -123,7 +123,7 @@ fn range(robot: &Robot, name: &str) -> (ReadingKind, f64, f64) {
     for joint in robot.joints.iter().filter(|joint| joint.reading.name == name) {
         if let Some(limits) = joint.limits
             && joint.reading.multiplier != 0.0
-            && (joint.kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M)
+            && (joint.kind == JointKind::Revolute || limits.upper - limits.lower < JointLimits::PLACEHOLDER_M)
         {
             let at = |value: f64| (value - joint.reading.offset) / joint.reading.multiplier;
             let (a, b) = (at(limits.lower), at(limits.upper));

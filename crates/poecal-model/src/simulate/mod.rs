@@ -1,17 +1,17 @@
 //! Synthetic robots and measurements with seeded noise: for tests, for learning, and for planning.
 
 mod configuration;
-mod gross;
+mod frameless_devices;
+mod gross_errors;
 mod pictures;
-mod places;
 pub mod random;
 mod robots;
 
-pub use crate::measurement::Kind;
+pub use crate::measurement::SessionKind;
 pub use configuration::{Configurations, random_configuration};
-pub use gross::Gross;
-pub use pictures::{Photographed, PictureSimulation};
-pub use places::plan;
+pub use frameless_devices::plan;
+pub use gross_errors::GrossErrors;
+pub use pictures::{PictureSimulation, SimulatedPictures};
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 
 use nalgebra::Vector3;
@@ -20,7 +20,7 @@ use rand_core::SeedableRng;
 
 use crate::measurement::{Dataset, Measurement, Observation};
 use crate::robot::{
-    Body, CorrectionModel, Extent, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
+    Body, CorrectionExtent, CorrectionModel, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
 };
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -32,9 +32,9 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// #     pub use poecal_model::simulate;
 /// #     pub use poecal_model::simulate::Simulation;
 /// # }
-/// use poecal::simulate::{Kind, elbow};
+/// use poecal::simulate::{SessionKind, elbow};
 /// use poecal::Simulation;
-/// let made = Simulation { count: 20, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let made = Simulation { count: 20, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
 /// assert_eq!(made.data.len(), 20);
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
@@ -80,15 +80,15 @@ fn value_of(
     [readings, before]: [&[f64]; 2],
     generator: &mut ChaCha8Rng,
 ) -> f64 {
-    let Some(of) = factor.approached() else {
+    let Some(of) = factor.approached_joint() else {
         if factor.is_payload() {
-            return PAYLOADS[usize::from(random::uniform(generator) < 0.5)];
+            return PAYLOADS[usize::from(random::uniform_number(generator) < 0.5)];
         }
-        return TEMPERATURES[0] + (TEMPERATURES[1] - TEMPERATURES[0]) * random::uniform(generator);
+        return TEMPERATURES[0] + (TEMPERATURES[1] - TEMPERATURES[0]) * random::uniform_number(generator);
     };
     let came = match names.iter().position(|name| name == of) {
         Some(at) => readings[at] - before[at],
-        None => random::uniform(generator) - 0.5,
+        None => random::uniform_number(generator) - 0.5,
     };
     if came < 0.0 { -1.0 } else { 1.0 }
 }
@@ -113,13 +113,13 @@ impl Default for Simulation {
 ///
 /// ```
 /// # mod poecal {
-/// #     pub use poecal_model::measurement::Kind;
+/// #     pub use poecal_model::measurement::SessionKind;
 /// #     pub use poecal_model::simulate::Simulation;
 /// #     pub use poecal_model::simulate;
 /// # }
-/// use poecal::{Kind, Simulation};
+/// use poecal::{SessionKind, Simulation};
 /// use poecal::simulate::scara;
-/// let made = Simulation::default().run(&scara(), Kind::POINT)?;
+/// let made = Simulation::default().run(&scara(), SessionKind::POINT)?;
 /// let readings = made.data.readings(0);
 /// let tip = made.device_from_base * made.actual.forward_kinematics(readings);
 /// let seen = made.data.observations[0].measurement.pose();
@@ -128,7 +128,7 @@ impl Default for Simulation {
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Simulated {
+pub struct SimulationResult {
     /// The nominal robot.
     pub nominal: Robot,
     /// The actual robot.
@@ -146,11 +146,11 @@ impl Simulation {
     ///
     /// # Errors
     /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
-    pub fn run(&self, nominal: &Robot, kind: Kind) -> Result<Simulated> {
+    pub fn run(&self, nominal: &Robot, kind: SessionKind) -> Result<SimulationResult> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         let nominal = &self.with_factors(nominal)?;
-        let actual = self.perturbed(nominal, &mut generator);
-        let actual = self.giving(actual);
+        let actual = self.perturb(nominal, &mut generator);
+        let actual = self.with_random_terms(actual);
         self.measure(nominal, actual, kind, &mut generator)
     }
 
@@ -170,7 +170,7 @@ impl Simulation {
     }
 
     /// The robot with terms of random coefficients, positive ones under weight; unchanged if there are none.
-    fn giving(&self, robot: Robot) -> Robot {
+    fn with_random_terms(&self, robot: Robot) -> Robot {
         if self.terms == Sizes::NONE {
             return robot;
         }
@@ -178,7 +178,7 @@ impl Simulation {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(2);
         let every = vec![true; robot.joints.len()];
-        let extent = Extent { gives: self.terms.gives(), ..Extent::default() };
+        let extent = CorrectionExtent { gives: self.terms.gives(), ..CorrectionExtent::default() };
         let model = CorrectionModel::new(&robot, self.gravity, &every, extent).with_sizes(&self.terms);
         let deviations: Vec<f64> = model.deviations(&self.terms).collect();
         let own = model.robot.terms.len() - deviations.len();
@@ -199,9 +199,9 @@ impl Simulation {
         &self,
         nominal: &Robot,
         actual: Robot,
-        kind: Kind,
+        kind: SessionKind,
         generator: &mut ChaCha8Rng,
-    ) -> Result<Simulated> {
+    ) -> Result<SimulationResult> {
         let device_from_base = if self.device_anywhere {
             let turn = random::rotation(generator);
             Pose::new(turn, random::direction(generator) * 3.0)
@@ -209,14 +209,14 @@ impl Simulation {
             Pose::identity()
         };
         let data = self.observe(nominal, &actual, &device_from_base, kind, generator)?;
-        Ok(Simulated { nominal: nominal.clone(), actual, device_from_base, data })
+        Ok(SimulationResult { nominal: nominal.clone(), actual, device_from_base, data })
     }
 
     /// Further configurations of a simulated session, free of noise, to judge the predictions of a calibration.
     ///
     /// # Errors
     /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
-    pub fn held_out(&self, made: &Simulated, kind: Kind, count: usize) -> Result<Dataset> {
+    pub fn held_out(&self, made: &SimulationResult, kind: SessionKind, count: usize) -> Result<Dataset> {
         // It is another stream of the same seed, so that these rows do not depend on the number of measured ones.
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(1);
@@ -229,7 +229,7 @@ impl Simulation {
         nominal: &Robot,
         actual: &Robot,
         device_from_base: &Pose,
-        kind: Kind,
+        kind: SessionKind,
         generator: &mut ChaCha8Rng,
     ) -> Result<Dataset> {
         if !kind.has_device() {
@@ -253,10 +253,10 @@ impl Simulation {
             let (instrument, target) = pairs.get(row % pairs.len().max(1)).copied().unwrap_or_default();
             let seen = match (instrument, target) {
                 (None, None) => *device_from_base * actual.forward_kinematics(&readings),
-                _ => seen(actual, device_from_base, (instrument, target), &readings),
+                _ => instrument_from_target(actual, device_from_base, (instrument, target), &readings),
             };
             let length = random::normal_vector(generator) * self.noise_position_m;
-            let measurement = self.drawn(kind, &seen, (row, length, 0.0), generator);
+            let measurement = self.measure_with_noise(kind, &seen, (row, length, 0.0), generator);
             let (target, station) = (
                 data.target_index(target.map(|mount| mount.name.as_str())),
                 instrument.map_or(0, |mount| data.station_index(Some(&mount.name))),
@@ -269,7 +269,7 @@ impl Simulation {
 
     /// A robot whose every axis, tip, instrument and target is turned and shifted by the stated amounts in random directions, about its own
     /// origin.
-    pub fn perturbed(&self, nominal: &Robot, generator: &mut ChaCha8Rng) -> Robot {
+    pub fn perturb(&self, nominal: &Robot, generator: &mut ChaCha8Rng) -> Robot {
         let mut motion_about = |point: &Vector3<f64>| {
             let turn = rotation::exp(&(random::direction(generator) * self.error_rotation_rad));
             let shift = random::direction(generator) * self.error_position_m;
@@ -278,7 +278,7 @@ impl Simulation {
         let screws: Vec<_> = nominal
             .joints
             .iter()
-            .map(|joint| joint.screw.transformed(&motion_about(&joint.frame.translation)))
+            .map(|joint| joint.screw.transform(&motion_about(&joint.frame.translation)))
             .collect();
         let mut actual = nominal.with_screws(&screws);
         actual.home = motion_about(&nominal.home.translation) * nominal.home;
@@ -303,10 +303,10 @@ impl Simulation {
 }
 
 /// Measurement of a target by a kind of session, without noise.
-pub fn exactly(kind: Kind, row: usize, target: &Pose) -> Measurement {
+pub fn exact_measurement(kind: SessionKind, row: usize, target: &Pose) -> Measurement {
     let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
     let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
-    exact.drawn(kind, target, (row, Vector3::zeros(), 0.0), &mut generator)
+    exact.measure_with_noise(kind, target, (row, Vector3::zeros(), 0.0), &mut generator)
 }
 
 /// Pairs of an instrument on the robot and a target with a body of its own; `None` is the device beside the robot, and the tip. Empty if both
@@ -327,7 +327,7 @@ pub fn pairs(robot: &Robot) -> Vec<(Option<&Mount>, Option<&Mount>)> {
 }
 
 /// `instrument_from_target`; without an instrument, as measured by the device beside the robot.
-pub fn seen(
+pub fn instrument_from_target(
     robot: &Robot,
     device_from_base: &Pose,
     (instrument, target): (Option<&Mount>, Option<&Mount>),

@@ -6,8 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::{Configurations, Simulation, random};
-use crate::camera::{Board, Camera, CommonError, Corner, Lens, Picture, middle, moved};
-use crate::measurement::{Dataset, Source};
+use crate::camera::{Board, Camera, CommonError, Corner, Lens, Picture, middle, move_pose};
+use crate::measurement::{Dataset, RowLocation};
 use crate::robot::Robot;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -22,7 +22,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 /// use poecal::simulate::{PictureSimulation, elbow};
 /// use poecal::Simulation;
 /// let session = Simulation { count: 12, error_rotation_rad: 1e-3, error_position_m: 1e-3, ..Simulation::default() };
-/// let made = PictureSimulation::usual(session, true).run(&elbow())?;
+/// let made = PictureSimulation::with_usual_camera(session, true).run(&elbow())?;
 /// assert_eq!((made.data.len(), made.data.pictures.all[0].corners.len()), (12, 24));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
@@ -55,14 +55,14 @@ pub struct PictureSimulation {
 /// ```
 /// # use poecal_model::simulate::{PictureSimulation, Simulation, elbow};
 /// # let session = Simulation { count: 12, error_rotation_rad: 1e-3, error_position_m: 1e-3, ..Simulation::default() };
-/// let made = PictureSimulation::usual(session, true).run(&elbow())?;
+/// let made = PictureSimulation::with_usual_camera(session, true).run(&elbow())?;
 /// let camera = made.actual.forward_kinematics(made.data.readings(0)) * made.tip_from_held;
 /// // The camera looks along its z at the board, 0.6 to 1 m away.
 /// assert!((0.4..1.2).contains(&(camera.inverse() * made.base_from_other).translation.z));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Photographed {
+pub struct SimulatedPictures {
     /// The nominal robot.
     pub nominal: Robot,
     /// The actual robot.
@@ -83,7 +83,7 @@ const TRIES: usize = 2000;
 const REACHED: f64 = 1e-9;
 
 /// A robot in front of the static object, in a simulation of pictures.
-struct Scene<'a> {
+struct PictureScene<'a> {
     arm: Arm,
     /// Readings of the arm among all.
     readings: Vec<usize>,
@@ -96,7 +96,7 @@ struct Scene<'a> {
 impl PictureSimulation {
     /// A camera of 1,500 px at 0.6 to 1 m from a board of 7 × 5 squares of 36 mm, with corners to 0.3 px.
     #[must_use]
-    pub fn usual(session: Simulation, in_hand: bool) -> Self {
+    pub fn with_usual_camera(session: Simulation, in_hand: bool) -> Self {
         let lens = Lens { size_px: Some([1920, 1200]), ..Lens::pinhole([1500.0, 1500.0], [959.5, 599.5]) };
         PictureSimulation {
             session,
@@ -114,7 +114,7 @@ impl PictureSimulation {
 
     /// The same simulation with another board and lens, with the board from a third to a half of the height of the picture.
     #[must_use]
-    pub fn before(self, board: Board, lens: Lens) -> Self {
+    pub fn with_board_and_lens(self, board: Board, lens: Lens) -> Self {
         let height_px = lens.size_px.map_or(1000.0, |[_, height]| f64::from(height));
         let distance_m =
             [0.54, 0.33].map(|part| lens.focal_px[0] * 2.0 * board.radius_m() / (part * height_px));
@@ -125,9 +125,9 @@ impl PictureSimulation {
     ///
     /// # Errors
     /// [`ErrorKind::Problem`] if the robot cannot be moved so that the camera sees the board.
-    pub fn run(&self, nominal: &Robot) -> Result<Photographed> {
+    pub fn run(&self, nominal: &Robot) -> Result<SimulatedPictures> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.session.seed);
-        let actual = self.session.perturbed(nominal, &mut generator);
+        let actual = self.session.perturb(nominal, &mut generator);
         let turn = random::direction(&mut generator) * 0.3;
         let held_turn =
             rotation::exp(&turn) * rotation::about(0, if self.in_hand { 0.0 } else { std::f64::consts::PI });
@@ -143,8 +143,9 @@ impl PictureSimulation {
         // The static object is where one configuration sees it well.
         let first = configurations.random(&mut generator);
         let base_from_held = nominal.forward_kinematics(&first) * tip_from_held;
-        let base_from_other = base_from_held * self.relative(&self.sight(&mut generator));
-        let scene = Scene { arm, readings, configurations, actual: &actual, tip_from_held, base_from_other };
+        let base_from_other = base_from_held * self.relative_pose(&self.sight(&mut generator));
+        let scene =
+            PictureScene { arm, readings, configurations, actual: &actual, tip_from_held, base_from_other };
         let mut data = Dataset::new(nominal.reading_names());
         data.pictures.cameras = vec![Camera::new("camera".to_owned(), self.lens)];
         data.pictures.boards = vec![self.board.clone()];
@@ -156,19 +157,19 @@ impl PictureSimulation {
             let (all, camera_from_board, corners) = found.ok_or_else(refuse)?;
             let image = Some(format!("{:03}.png", data.len()));
             let picture = Picture::new(0, 0, image, corners);
-            data.push_picture(&all, picture, (None, Source::default()))?.map_err(|_| refuse())?;
+            data.push_picture(&all, picture, (None, RowLocation::default()))?.map_err(|_| refuse())?;
             camera_from_boards.push(camera_from_board);
             near = all;
         }
         data.settle_pixels();
         let (nominal, camera_from_board) = (nominal.clone(), camera_from_boards);
-        Ok(Photographed { nominal, actual, tip_from_held, base_from_other, camera_from_board, data })
+        Ok(SimulatedPictures { nominal, actual, tip_from_held, base_from_other, camera_from_board, data })
     }
 
     /// Tries configurations near one, and now and then elsewhere, until all of the board is seen; returns the board and its corners too.
     fn find_view(
         &self,
-        scene: &Scene<'_>,
+        scene: &PictureScene<'_>,
         near: &mut Vec<f64>,
         generator: &mut ChaCha8Rng,
     ) -> Option<(Vec<f64>, Pose, Vec<Corner>)> {
@@ -178,10 +179,10 @@ impl PictureSimulation {
                 *near = scene.configurations.random(generator);
             }
             let wanted = scene.base_from_other
-                * self.relative(&self.sight(generator)).inverse()
+                * self.relative_pose(&self.sight(generator)).inverse()
                 * scene.tip_from_held.inverse();
             let mut q: Vec<f64> = scene.readings.iter().map(|&at| near[at]).collect();
-            if scene.arm.nearest(&wanted, &mut q) > REACHED {
+            if scene.arm.solve_nearest(&wanted, &mut q) > REACHED {
                 continue;
             }
             let mut all = near.clone();
@@ -189,7 +190,7 @@ impl PictureSimulation {
             if !scene.configurations.contain(&all) {
                 continue;
             }
-            let held = self.held(scene.actual, &all, &scene.tip_from_held, generator);
+            let held = self.held_pose(scene.actual, &all, &scene.tip_from_held, generator);
             let camera_from_board = if self.in_hand {
                 held.inverse() * scene.base_from_other
             } else {
@@ -204,7 +205,7 @@ impl PictureSimulation {
 
     /// A pose of the board in the camera's frame.
     fn sight(&self, generator: &mut ChaCha8Rng) -> Pose {
-        let mut between = |[from, to]: [f64; 2]| from + (to - from) * random::uniform(generator);
+        let mut between = |[from, to]: [f64; 2]| from + (to - from) * random::uniform_number(generator);
         let depth = between(self.distance_m);
         let [width, height] = self.lens.size_px.unwrap_or([1000, 1000]).map(f64::from);
         let pixel = Vector2::new(between(self.part[0]) * width, between(self.part[1]) * height);
@@ -223,12 +224,12 @@ impl PictureSimulation {
     }
 
     /// Pose of the static object in the frame of the mounted one, by the pose of the board in the camera's frame.
-    fn relative(&self, camera_from_board: &Pose) -> Pose {
+    fn relative_pose(&self, camera_from_board: &Pose) -> Pose {
         if self.in_hand { *camera_from_board } else { camera_from_board.inverse() }
     }
 
     /// Mounted object in the base, with the error of this configuration.
-    fn held(
+    fn held_pose(
         &self,
         actual: &Robot,
         readings: &[f64],
@@ -238,7 +239,7 @@ impl PictureSimulation {
         let exact = actual.forward_kinematics(readings) * *tip_from_held;
         let shift = random::normal_vector(generator) * self.common.shift_m;
         let turn = random::normal_vector(generator) * self.common.turn_rad;
-        moved(&exact, &Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z))
+        move_pose(&exact, &Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z))
     }
 
     /// Corners as they are seen; `None` if one is not in the picture.

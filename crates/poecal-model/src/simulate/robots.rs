@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::random;
-use crate::robot::{Joint, Limits, Robot};
+use crate::robot::{Joint, JointLimits, Robot};
 use poecal_arm::lie::{Pose, Screw, rotation};
 
 /// A robot of joints and a home pose that are known to be valid.
@@ -32,18 +32,18 @@ fn revolute(index: usize, direction: [f64; 3], point: [f64; 3], lower_deg: f64, 
     let mut joint =
         Joint::revolute(&format!("joint{}", index + 1), Screw::revolute(&Vector3::from(direction), &point));
     joint.frame.translation = point;
-    joint.limits = Some(Limits { lower: lower_deg.to_radians(), upper: upper_deg.to_radians() });
+    joint.limits = Some(JointLimits { lower: lower_deg.to_radians(), upper: upper_deg.to_radians() });
     joint
 }
 
 fn prismatic(index: usize, direction: [f64; 3], lower: f64, upper: f64) -> Joint {
     let screw = Screw::prismatic(&Vector3::from(direction));
     let mut joint = Joint::prismatic(&format!("joint{}", index + 1), screw);
-    joint.limits = Some(Limits { lower, upper });
+    joint.limits = Some(JointLimits { lower, upper });
     joint
 }
 
-fn at(x: f64, y: f64, z: f64) -> Pose {
+fn pose_at(x: f64, y: f64, z: f64) -> Pose {
     Pose::from_translation(Vector3::new(x, y, z))
 }
 
@@ -58,7 +58,7 @@ pub fn elbow() -> Robot {
         revolute(4, [0.0, 1.0, 0.0], [0.784, 0.0, 0.720], -40.0, 220.0),
         revolute(5, [-1.0, 0.0, 0.0], [0.784, 0.0, 0.720], -360.0, 360.0),
     ];
-    robot("googol_elbow", joints, at(0.834, 0.0, 0.720))
+    robot("googol_elbow", joints, pose_at(0.834, 0.0, 0.720))
 }
 
 /// A SCARA: two parallel revolute joints, a prismatic one and a last revolute one.
@@ -70,7 +70,7 @@ pub fn scara() -> Robot {
         prismatic(2, [0.0, 0.0, -1.0], 0.0, 0.25),
         revolute(3, [0.0, 0.0, 1.0], [0.60, 0.0, 0.2], -180.0, 180.0),
     ];
-    robot("scara", joints, at(0.64, 0.02, 0.15))
+    robot("scara", joints, pose_at(0.64, 0.02, 0.15))
 }
 
 /// A gantry of three prismatic joints with a three-axis wrist.
@@ -84,7 +84,7 @@ pub fn gantry() -> Robot {
         revolute(4, [0.0, 1.0, 0.0], [0.0, 0.0, 0.9], -110.0, 110.0),
         revolute(5, [0.0, 0.0, 1.0], [0.03, 0.0, 0.8], -180.0, 180.0),
     ];
-    robot("gantry", joints, at(0.05, 0.02, 0.7))
+    robot("gantry", joints, pose_at(0.05, 0.02, 0.7))
 }
 
 /// A seven-axis arm of the usual alternating kind.
@@ -99,7 +99,7 @@ pub fn seven_axis() -> Robot {
         revolute(5, [0.0, 1.0, 0.0], [0.0, 0.0, 1.14], -120.0, 120.0),
         revolute(6, [0.0, 0.0, 1.0], [0.0, 0.0, 1.2], -175.0, 175.0),
     ];
-    robot("seven_axis", joints, at(0.04, 0.03, 1.3))
+    robot("seven_axis", joints, pose_at(0.04, 0.03, 1.3))
 }
 
 /// A chain of `count` joints with random axes, origins and kinds (one in four prismatic, the first and last revolute).
@@ -109,9 +109,9 @@ pub fn random_chain(count: usize, seed: u64) -> Robot {
     let mut place = Vector3::zeros();
     let joints = (0..count)
         .map(|index| {
-            let slides = index > 0 && index + 1 < count && random::uniform(&mut generator) < 0.25;
+            let slides = index > 0 && index + 1 < count && random::uniform_number(&mut generator) < 0.25;
             let direction = random::direction(&mut generator);
-            place += random::direction(&mut generator) * (0.1 + 0.3 * random::uniform(&mut generator));
+            place += random::direction(&mut generator) * (0.1 + 0.3 * random::uniform_number(&mut generator));
             if slides {
                 prismatic(index, direction.into(), -0.3, 0.3)
             } else {
@@ -119,7 +119,7 @@ pub fn random_chain(count: usize, seed: u64) -> Robot {
             }
         })
         .collect();
-    let turn = rotation::exp(&(random::direction(&mut generator) * random::uniform(&mut generator)));
+    let turn = rotation::exp(&(random::direction(&mut generator) * random::uniform_number(&mut generator)));
     let tip = place + random::direction(&mut generator) * 0.2;
     robot(&format!("random_{count}_{seed}"), joints, Pose::new(turn, tip))
 }

@@ -5,7 +5,7 @@
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, Screw, Twist};
 use poecal_model::robot::{Joint, Robot};
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Rounding of some ten products of numbers below ten, on both sides.
@@ -19,8 +19,8 @@ fn twist([wx, wy, wz, vx, vy, vz]: [f64; 6]) -> Twist {
     Twist::new(Vector3::new(vx, vy, vz), Vector3::new(wx, wy, wz))
 }
 
-fn apart(a: &Pose, b: &Pose) -> f64 {
-    larger((a.rotation - b.rotation).amax(), (a.translation - b.translation).amax())
+fn robot_difference(a: &Pose, b: &Pose) -> f64 {
+    larger_or_nan((a.rotation - b.rotation).amax(), (a.translation - b.translation).amax())
 }
 
 /// Space Jacobian: each axis after the motions of the joints before it.
@@ -37,7 +37,7 @@ fn space_jacobian(axes: &[Twist], values: &[f64]) -> Vec<Twist> {
 fn largest_difference(found: &[Twist], expected: &[[f64; 6]]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let differences = found.iter().zip(expected).map(|(a, b)| (a.to_vector() - twist(*b).to_vector()).amax());
-    differences.fold(0.0, larger)
+    differences.fold(0.0, larger_or_nan)
 }
 
 /// Example 4.5: lengths in metres.
@@ -63,10 +63,11 @@ fn the_arm_of_example_4_5_stands_where_the_book_has_it() {
     let robot = ur5();
     // The pose is as printed: one elbow and one wrist turned by a right angle.
     let printed = pose([[0.0, -1.0, 0.0, 0.095], [1.0, 0.0, 0.0, 0.109], [0.0, 0.0, 1.0, 0.988]]);
-    let first = apart(&robot.forward_kinematics(&[0.0, -FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, 0.0]), &printed);
+    let first =
+        robot_difference(&robot.forward_kinematics(&[0.0, -FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, 0.0]), &printed);
     let values = [0.3, -1.1, 0.7, -0.4, 1.2, 2.5];
     let tip = robot.forward_kinematics(&values);
-    let second = apart(
+    let second = robot_difference(
         &tip,
         &pose([
             [0.00374228141325621, 0.8582182859245064, 0.5132712431401414, 0.60407968080285],
@@ -177,6 +178,6 @@ fn sample_calls_of_the_library_come_out() {
             ],
         ],
     );
-    println!("tip {:.1e}, Jacobian {jacobian:.1e}", apart(&tip, &expected));
-    assert!(apart(&tip, &expected) < ROUNDING && jacobian < ROUNDING);
+    println!("tip {:.1e}, Jacobian {jacobian:.1e}", robot_difference(&tip, &expected));
+    assert!(robot_difference(&tip, &expected) < ROUNDING && jacobian < ROUNDING);
 }

@@ -4,13 +4,15 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
-use poecal_model::offsets::{End, Explanation, OffsetOptions, explain, explain_screws, into_screws};
+use poecal_model::offsets::{
+    EndConstraint, OffsetExplanation, OffsetOptions, explain, explain_screws, into_screws,
+};
 use poecal_model::robot::{Joint, JointKind, Reading, Robot};
 use poecal_model::simulate::{
     Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
 };
 use poecal_numerics::error::ErrorKind;
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions::random_twist;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -30,7 +32,7 @@ fn random_offsets(robot: &Robot, angle_deg: f64, generator: &mut ChaCha8Rng) -> 
         JointKind::Revolute => angle_deg.to_radians(),
         JointKind::Prismatic => 0.05,
     });
-    sizes.map(|size| size * (2.0 * random::uniform(generator) - 1.0)).collect()
+    sizes.map(|size| size * (2.0 * random::uniform_number(generator) - 1.0)).collect()
 }
 
 /// Largest distance and angle between `base * robot(θ + offsets) * tip` and `other(θ)` on random configurations.
@@ -48,23 +50,24 @@ fn difference(
             robot.joint_values(&readings).iter().zip(offsets).map(|(v, o)| v + o).collect();
         let tip = *ends[0] * robot.motion(&values) * robot.home * *ends[1];
         let expected = other.forward_kinematics(&readings);
-        largest = larger(largest, (tip.translation - expected.translation).norm());
-        largest = larger(largest, rotation::log(&(tip.rotation * expected.rotation.transpose())).norm());
+        largest = larger_or_nan(largest, (tip.translation - expected.translation).norm());
+        largest =
+            larger_or_nan(largest, rotation::log(&(tip.rotation * expected.rotation.transpose())).norm());
     }
     largest
 }
 
 /// Largest difference of offsets that are determined.
-fn offset_error(found: &Explanation, put_in: &[f64]) -> f64 {
+fn offset_error(found: &OffsetExplanation, put_in: &[f64]) -> f64 {
     let determined = (0..put_in.len()).filter(|joint| !found.undetermined.contains(joint));
-    determined.map(|joint| (found.offsets[joint] - put_in[joint]).abs()).fold(0.0, larger)
+    determined.map(|joint| (found.offsets[joint] - put_in[joint]).abs()).fold(0.0, larger_or_nan)
 }
 
 /// Largest remainder of screws and home pose.
-fn remainder(found: &Explanation) -> f64 {
+fn remainder(found: &OffsetExplanation) -> f64 {
     let joints = found.joints.iter().flat_map(|joint| [joint.tilt_rad, joint.shift_m.unwrap_or(0.0)]);
     let home = found.home.iter().flat_map(|home| [home.position_m, home.rotation_rad]);
-    joints.chain(home).fold(0.0, larger)
+    joints.chain(home).fold(0.0, larger_or_nan)
 }
 
 #[test]
@@ -85,12 +88,12 @@ fn offsets_become_screws_and_offsets_again() {
                 same,
                 offset_error(&found, &offsets),
                 remainder(&found),
-                larger(predicted, found.with_offsets.max_m),
+                larger_or_nan(predicted, found.with_offsets.max_m),
             ];
             let words = figures.map(|figure| format!("{figure:.0e}")).join(" ");
             println!("{} ±{angle_deg}°: {words}, not told {:?}", robot.name, found.undetermined);
             assert!(found.undetermined.is_empty(), "{}: {:?}", robot.name, found.undetermined);
-            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = larger(*worst, figure));
+            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = larger_or_nan(*worst, figure));
         }
         println!(
             "±{angle_deg}°: f'(θ) = f(θ+δ) {:.1e}, offsets {:.1e}, remainder {:.1e}, prediction {:.1e}",
@@ -111,11 +114,15 @@ fn free_base_and_tip_are_found_too() {
             let mut actual = into_screws(robot, &offsets).unwrap();
             let base = Pose::exp(&random_twist(2.0, 0.5, &mut generator));
             for joint in &mut actual.joints {
-                joint.screw = joint.screw.transformed(&base);
+                joint.screw = joint.screw.transform(&base);
                 joint.frame = base * joint.frame;
             }
             actual.home = base * actual.home * Pose::exp(&random_twist(1.0, 0.3, &mut generator));
-            let options = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
+            let options = OffsetOptions {
+                base: EndConstraint::Free,
+                tip: EndConstraint::Free,
+                ..OffsetOptions::default()
+            };
             let found = explain(robot, &actual, &options).unwrap();
             let ends = [&found.base_motion, &found.tip_motion];
             let predicted = difference(robot, &found.offsets, ends, &actual, &mut generator);
@@ -125,7 +132,7 @@ fn free_base_and_tip_are_found_too() {
             let last = robot.joints.len() - 1;
             assert!(found.undetermined.contains(&0) && found.undetermined.contains(&last));
             assert!(found.offsets[0].abs() < EXACT && found.offsets[last].abs() < EXACT);
-            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = larger(*worst, figure));
+            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = larger_or_nan(*worst, figure));
         }
     }
     println!("offsets {:.1e}, remainder {:.1e}, prediction {:.1e}", worst[0], worst[1], worst[2]);
@@ -146,7 +153,7 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     assert!(half.iter().all(|error| error.abs() < EXACT), "{:?}", found.offsets);
     assert!(remainder(&found) < EXACT && found.with_offsets.max_m < EXACT);
     // The tool is refitted: the tip can replace the last joint's offset.
-    let options = OffsetOptions { tip: End::Free, ..OffsetOptions::default() };
+    let options = OffsetOptions { tip: EndConstraint::Free, ..OffsetOptions::default() };
     let found = explain(&elbow(), &into_screws(&elbow(), &[0.1; 6]).unwrap(), &options).unwrap();
     assert_eq!(found.undetermined, [5]);
     assert!(found.home.is_none() && found.offsets[5].abs() < EXACT && found.with_offsets.max_m < EXACT);
@@ -161,10 +168,10 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     // A model that states 90° as 1.5708 rad has two axes that are nearly one; that difference determines nothing.
     let mut rounded = robot.clone();
     let tilt = Pose::from_xyz_rpy([0.0; 3], [3.7e-6, 0.0, 0.0]);
-    rounded.joints[1].screw = axis.transformed(&tilt);
+    rounded.joints[1].screw = axis.transform(&tilt);
     let mut actual = into_screws(&rounded, &[0.02, 0.01, -0.03]).unwrap();
     actual.joints[1].screw =
-        actual.joints[1].screw.transformed(&Pose::from_xyz_rpy([0.0; 3], [0.0, 0.002, 0.0]));
+        actual.joints[1].screw.transform(&Pose::from_xyz_rpy([0.0; 3], [0.0, 0.002, 0.0]));
     let found = explain(&rounded, &actual, &OffsetOptions::default()).unwrap();
     println!("nearly coaxial: {:?}", found.offsets);
     assert_eq!(found.undetermined, [0, 1]);
@@ -186,9 +193,9 @@ fn screw_errors_remain_and_hardly_move_the_offsets() {
         for seed in trials(50).seeds() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let offsets = random_offsets(&robot, 2.0, &mut generator);
-            let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
+            let actual = error.perturb(&into_screws(&robot, &offsets).unwrap(), &mut generator);
             let found = explain_screws(&robot, &actual, &OffsetOptions::default()).unwrap();
-            worst = larger(worst, offset_error(&found, &offsets));
+            worst = larger_or_nan(worst, offset_error(&found, &offsets));
             let tilts = found.joints.iter().map(|joint| joint.tilt_rad);
             let rms = (tilts.map(|tilt| tilt * tilt).sum::<f64>() / offsets.len() as f64).sqrt();
             assert!(rms > 0.2 * error.error_rotation_rad && rms < 2.0 * error.error_rotation_rad, "{rms}");
@@ -209,10 +216,12 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
     for robot in robots() {
         let length_m = robot.arm_m() / 3.0;
         let put_in_m2 = (length_m * error.error_rotation_rad).powi(2) + error.error_position_m.powi(2);
-        for (seed, end) in trials(10).seeds().flat_map(|seed| [(seed, End::Kept), (seed, End::Free)]) {
+        for (seed, end) in
+            trials(10).seeds().flat_map(|seed| [(seed, EndConstraint::Kept), (seed, EndConstraint::Free)])
+        {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let offsets = random_offsets(&robot, 170.0, &mut generator);
-            let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
+            let actual = error.perturb(&into_screws(&robot, &offsets).unwrap(), &mut generator);
             let options =
                 OffsetOptions { base: end, tip: end, configurations: 1, ..OffsetOptions::default() };
             let found = explain_screws(&robot, &actual, &options).unwrap();
@@ -220,7 +229,7 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
             let home = found.home.iter().map(|home| (home.rotation_rad, home.position_m));
             let left_m2: f64 =
                 joints.chain(home).map(|(turn, shift)| (length_m * turn).powi(2) + shift.powi(2)).sum();
-            worst = larger(worst, left_m2 / put_in_m2 / (robot.joints.len() + 1) as f64);
+            worst = larger_or_nan(worst, left_m2 / put_in_m2 / (robot.joints.len() + 1) as f64);
             count += 1;
         }
     }
@@ -233,7 +242,7 @@ fn a_screw_error_that_no_offset_can_make_is_the_remainder() {
     // No offset moves the first screw of a kept base.
     let mut actual = elbow();
     let tilt = Pose::from_xyz_rpy([0.0; 3], [0.001, 0.0, 0.0]);
-    actual.joints[0].screw = actual.joints[0].screw.transformed(&tilt);
+    actual.joints[0].screw = actual.joints[0].screw.transform(&tilt);
     let found = explain_screws(&elbow(), &actual, &OffsetOptions::default()).unwrap();
     assert!((found.joints[0].tilt_rad - 0.001).abs() < 1e-9, "{:?}", found.joints[0]);
     assert!(found.offsets.iter().all(|offset| offset.abs() < 1e-9));

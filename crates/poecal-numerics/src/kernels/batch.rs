@@ -2,23 +2,23 @@
 
 use pulp::Simd;
 
-use super::frame::{Frame, moved, turned};
-use super::plan::{FixedMotion, Plan};
-use super::turn::Turn;
-use super::vector::{Lanes, Vectors, Wide};
-use super::work::{Axis, ValueColumn};
+use super::frame::{KernelFrame, move_row, turn_row};
+use super::plan::{FixedMotion, KernelPlan};
+use super::turn::ResidualRotations;
+use super::vector::{LaneBlock, Lanes, Vectors};
+use super::work::{JointWork, ValueColumn};
 
 /// State of one vector of rows: part `part` of a block.
 pub(crate) struct Batch<'a> {
-    pub(crate) plan: &'a Plan,
+    pub(crate) plan: &'a KernelPlan,
     pub(crate) part: usize,
     /// Columns of the block, each `stride` after the one before.
-    pub(crate) columns: &'a mut [[Wide; 3]],
+    pub(crate) columns: &'a mut [[LaneBlock; 3]],
     pub(crate) stride: usize,
-    pub(crate) axes: &'a mut [Axis],
+    pub(crate) axes: &'a mut [JointWork],
     pub(crate) terms: &'a mut [ValueColumn],
-    pub(crate) shift_gradient: &'a mut [Wide],
-    pub(crate) turn_gradient: &'a mut [Wide],
+    pub(crate) shift_gradient: &'a mut [LaneBlock],
+    pub(crate) turn_gradient: &'a mut [LaneBlock],
 }
 
 /// Weight of each row, and its whitened residual as a wrench on the target.
@@ -39,24 +39,24 @@ impl Batch<'_> {
         &mut self,
         simd: S,
         steps: &[FixedMotion],
-        (values, factors): (&[[Wide; 2]], &[Wide]),
+        (values, factors): (&[[LaneBlock; 2]], &[LaneBlock]),
         weight: Lanes<S>,
         per_length: Lanes<S>,
-    ) -> Frame<S> {
+    ) -> KernelFrame<S> {
         let part = self.part;
-        let mut link = Frame([[Lanes::splat(simd, 0.0); 4]; 3]);
+        let mut link = KernelFrame([[Lanes::splat(simd, 0.0); 4]; 3]);
         let joints = self.plan.joints.iter().zip(steps).zip(values).zip(&mut *self.axes);
         for (index, (((joint, step), [cosine, sine]), axis)) in joints.enumerate() {
             if index == 0 {
-                link = Frame::fixed(simd, step);
+                link = KernelFrame::from_step(simd, step);
             }
             let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
             let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
             let versine = weight - weight * cosine;
             for (k, row) in link.0.iter_mut().enumerate() {
-                let still = if index == 0 { *row } else { turned(simd, *row, step) };
+                let still = if index == 0 { *row } else { turn_row(simd, *row, step) };
                 let [x, y, _, origin] = still;
-                *row = moved(still, joint.turns, cosine, sine);
+                *row = move_row(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
                     (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
                 } else {
@@ -87,7 +87,7 @@ impl Batch<'_> {
     pub(crate) fn add_device<S: Simd, const FULL: bool>(
         &mut self,
         simd: S,
-        target: &Frame<S>,
+        target: &KernelFrame<S>,
         wrench: &RowWrench<S>,
     ) {
         let Some(device) = &self.plan.device else { return };
@@ -115,7 +115,7 @@ impl Batch<'_> {
     pub(crate) fn add_axes<S: Simd, const FULL: bool, const PLAIN: bool>(
         &mut self,
         simd: S,
-        target: &Frame<S>,
+        target: &KernelFrame<S>,
         wrench: &RowWrench<S>,
     ) {
         let (part, stride) = (self.part, self.stride);
@@ -149,7 +149,12 @@ impl Batch<'_> {
 
     /// Columns and gradient of the unknown terms of joint values.
     #[inline(always)]
-    fn add_terms<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
+    fn add_terms<S: Simd, const FULL: bool>(
+        &mut self,
+        simd: S,
+        target: &KernelFrame<S>,
+        wrench: &RowWrench<S>,
+    ) {
         let (part, stride) = (self.part, self.stride);
         for (joint, axis) in self.plan.joints.iter().zip(&*self.axes).filter(|(joint, _)| joint.terms.1 > 0) {
             let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
@@ -171,7 +176,11 @@ impl Batch<'_> {
 
     /// Columns of the target's position and frame: theory.md §5 (23) and (24).
     #[inline(always)]
-    pub(crate) fn add_place<S: Simd, const FULL: bool>(&mut self, target: &Frame<S>, wrench: &RowWrench<S>) {
+    pub(crate) fn add_place<S: Simd, const FULL: bool>(
+        &mut self,
+        target: &KernelFrame<S>,
+        wrench: &RowWrench<S>,
+    ) {
         let Some(place) = self.plan.place else { return };
         let part = self.part;
         for k in 0..3 {
@@ -191,9 +200,9 @@ impl Batch<'_> {
     pub(crate) fn add_turned<S: Simd>(
         &self,
         simd: S,
-        turn: &Turn<S>,
+        turn: &ResidualRotations<S>,
         ratio: Lanes<S>,
-        out: &mut [Wide],
+        out: &mut [LaneBlock],
         rows: usize,
     ) {
         let columns = self.plan.turns.iter().map(|&shift| &self.columns[shift * self.stride]);

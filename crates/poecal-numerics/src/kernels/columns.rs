@@ -4,8 +4,8 @@ use pulp::Simd;
 
 use super::influence::NUMBERS;
 use super::kernel::add_rows;
-use super::plan::Arm;
-use super::vector::{Wide, parts};
+use super::plan::ArmAtEstimate;
+use super::vector::{LaneBlock, parts};
 use super::work::WORK;
 
 /// Adds the whitened columns of the rows of one block at their places in `jacobian` (translation columns, then rotation columns), each with its sign.
@@ -14,12 +14,12 @@ use super::work::WORK;
 #[inline(always)]
 pub(crate) fn whitened_columns<S: Simd>(
     simd: S,
-    arm: &Arm<'_>,
-    block: &[Wide],
+    arm: &ArmAtEstimate<'_>,
+    block: &[LaneBlock],
     first: usize,
     places: &[(usize, f64)],
-    jacobian: &mut [[Wide; NUMBERS]],
-    residual: &mut [Wide; NUMBERS],
+    jacobian: &mut [[LaneBlock; NUMBERS]],
+    residual: &mut [LaneBlock; NUMBERS],
 ) {
     let plan = arm.plan;
     let mut work = WORK.take();
@@ -52,7 +52,7 @@ pub(crate) fn whitened_columns<S: Simd>(
 }
 
 #[inline(always)]
-fn add(to: &mut [Wide], from: &[Wide], sign: f64) {
+fn add(to: &mut [LaneBlock], from: &[LaneBlock], sign: f64) {
     for (to, from) in to.iter_mut().zip(from) {
         for (to, from) in to.0.iter_mut().zip(from.0) {
             *to += sign * from;

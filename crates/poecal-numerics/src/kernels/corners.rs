@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::gram::{TILE, add_products, sums_len};
 use super::plan::FixedMotion;
-use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
+use super::vector::{LaneBlock, Lanes, Vectors, WIDTH, parts};
 
 /// Motions of a board in its camera's frame: shifts, and turns about its origin.
 pub const MOTIONS: usize = 6;
@@ -17,22 +17,22 @@ const BEFORE: f64 = 1e-2;
 #[derive(Clone, Debug)]
 pub struct Corners {
     /// Points of the board, m.
-    pub point: [Wide; POINT],
+    pub point: [LaneBlock; POINT],
     /// Measured pixels, px.
-    pub pixel: [Wide; 2],
+    pub pixel: [LaneBlock; 2],
     /// Root of the weight, over the standard deviation, 1/px.
-    pub root: Wide,
+    pub root: LaneBlock,
 }
 
 impl Corners {
     /// Corners of weight zero.
     pub const NONE: Corners =
-        Corners { point: [Wide::ZERO; POINT], pixel: [Wide::ZERO; 2], root: Wide::ZERO };
+        Corners { point: [LaneBlock::ZERO; POINT], pixel: [LaneBlock::ZERO; 2], root: LaneBlock::ZERO };
 }
 
 /// A lens of Brown and Conrady, in the order of `LENS_NAMES` of cameras.
 #[derive(Clone, Copy, Debug)]
-pub struct Brown {
+pub struct BrownConrady {
     /// Numbers.
     pub numbers: [f64; 12],
     /// Number of unknown ones, which are the first.
@@ -44,15 +44,15 @@ pub struct Brown {
 /// Products of the derivatives of one picture's corners.
 #[derive(Clone, Debug, Default)]
 pub struct CornerProducts {
-    columns: Vec<Wide>,
-    sums: Vec<Wide>,
+    columns: Vec<LaneBlock>,
+    sums: Vec<LaneBlock>,
     /// Motions, unknown numbers of the lens, and residual.
     used: usize,
     /// Upper triangle of their products, row-major.
     pub(crate) all: Vec<f64>,
     /// For each block the products of its corners: of all columns with each of the three components of the point, and of these with one
     /// another.
-    pub by_point: Vec<Wide>,
+    pub by_point: Vec<LaneBlock>,
     /// Weight of corners that are not seen.
     pub unseen: f64,
 }
@@ -78,7 +78,7 @@ impl CornerProducts {
 #[inline(always)]
 pub(crate) fn corner_products<S: Simd>(
     simd: S,
-    lens: &Brown,
+    lens: &BrownConrady,
     pose: &FixedMotion,
     corners: &[Corners],
     with_points: bool,
@@ -88,7 +88,7 @@ pub(crate) fn corner_products<S: Simd>(
     let (columns, stride) = (used.next_multiple_of(TILE), 2 * corners.len());
     out.used = used;
     out.columns.clear();
-    out.columns.resize((columns + POINT) * stride, Wide::ZERO);
+    out.columns.resize((columns + POINT) * stride, LaneBlock::ZERO);
     let mut unseen = Lanes::splat(simd, 0.0);
     for (block, corners) in corners.iter().enumerate() {
         for part in parts(simd) {
@@ -99,7 +99,7 @@ pub(crate) fn corner_products<S: Simd>(
     }
     out.unseen = unseen.sum();
     out.sums.clear();
-    out.sums.resize(sums_len(columns, S::F64_LANES), Wide::ZERO);
+    out.sums.resize(sums_len(columns, S::F64_LANES), LaneBlock::ZERO);
     add_products(simd, &out.columns, (stride, stride), columns, &mut out.sums, |_, _| true);
     gather(simd, columns, out);
     out.by_point.clear();
@@ -140,7 +140,7 @@ fn products_of_points<S: Simd>(
     out: &mut CornerProducts,
 ) {
     let begin = out.by_point.len();
-    out.by_point.resize(begin + out.of_corner(), Wide::ZERO);
+    out.by_point.resize(begin + out.of_corner(), LaneBlock::ZERO);
     let (columns, found) = (&out.columns, &mut out.by_point[begin..]);
     for part in parts(simd) {
         let point = [
@@ -168,14 +168,14 @@ fn products_of_points<S: Simd>(
 
 /// Writes both rows of a column.
 #[inline(always)]
-fn put<S: Simd>(out: &mut [Wide], at: usize, [u, v]: [Lanes<S>; 2], part: usize) {
+fn put<S: Simd>(out: &mut [LaneBlock], at: usize, [u, v]: [Lanes<S>; 2], part: usize) {
     u.store(&mut out[at], part);
     v.store(&mut out[at + 1], part);
 }
 
 /// Both rows of a column.
 #[inline(always)]
-fn pair<S: Simd>(simd: S, columns: &[Wide], at: usize, part: usize) -> [Lanes<S>; 2] {
+fn pair<S: Simd>(simd: S, columns: &[LaneBlock], at: usize, part: usize) -> [Lanes<S>; 2] {
     [Lanes::load(simd, &columns[at], part), Lanes::load(simd, &columns[at + 1], part)]
 }
 
@@ -183,9 +183,9 @@ fn pair<S: Simd>(simd: S, columns: &[Wide], at: usize, part: usize) -> [Lanes<S>
 #[inline(always)]
 fn write<S: Simd>(
     simd: S,
-    (lens, pose): (&Brown, &FixedMotion),
+    (lens, pose): (&BrownConrady, &FixedMotion),
     corners: &Corners,
-    (out, stride, columns): (&mut [Wide], usize, usize),
+    (out, stride, columns): (&mut [LaneBlock], usize, usize),
     part: usize,
 ) -> Lanes<S> {
     let numbers = &lens.numbers;
@@ -211,15 +211,15 @@ fn write<S: Simd>(
     // The factor is 1 for a visible corner, else 0.
     let norm = x.times_plus(x, y.times_plus(y, z * z)).sqrt();
     let ahead = z - norm * Lanes::splat(simd, BEFORE);
-    let before = ahead.over(ahead, 0.0);
-    let w = before.over(z, 0.0);
+    let before = ahead.divide_or(ahead, 0.0);
+    let w = before.divide_or(z, 0.0);
     let (a, b) = (x * w, y * w);
     let s = a.times_plus(a, b * b);
     let above = s.times_plus(s.times_plus(s.times_plus(k3, k2), k1), one);
     let below = s.times_plus(s.times_plus(s.times_plus(k6, k5), k4), one);
     let inside = Lanes::splat(simd, lens.turn) - s;
-    let seen = before * inside.over(inside, 0.0) * below.over(below, 0.0);
-    let per = one.over(below, 0.0);
+    let seen = before * inside.divide_or(inside, 0.0) * below.divide_or(below, 0.0);
+    let per = one.divide_or(below, 0.0);
     let radial = above * per;
     let three = Lanes::splat(simd, 3.0);
     let above_slope = s.times_plus(two.times_plus(k2, s * three * k3), k1);

@@ -2,13 +2,13 @@
 
 use pulp::Simd;
 
-use super::vector::{Lanes, WIDTH, Wide, each, parts};
+use super::vector::{LaneBlock, Lanes, WIDTH, from_index, parts};
 
 /// The factor `R` of `RᵀR`: upper, row after row. Elements on and below the diagonal are arbitrary.
 #[derive(Clone, Debug, Default)]
 pub struct Factor {
     pub(crate) n: usize,
-    rows: Vec<Wide>,
+    rows: Vec<LaneBlock>,
     /// Inverses of the diagonal.
     pub(crate) inverses: Vec<f64>,
 }
@@ -36,7 +36,7 @@ const PANEL: usize = 4;
 #[inline(always)]
 pub(crate) fn cholesky<S: Simd>(simd: S, upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
     let stride = n.div_ceil(WIDTH);
-    let mut rows = vec![Wide::ZERO; n.next_multiple_of(PANEL) * stride];
+    let mut rows = vec![LaneBlock::ZERO; n.next_multiple_of(PANEL) * stride];
     let mut inverses = Vec::with_capacity(n);
     for i in (0..n).step_by(PANEL) {
         let (above, rest) = rows.split_at_mut(i * stride);
@@ -73,11 +73,11 @@ pub(crate) fn cholesky<S: Simd>(simd: S, upper: &[f64], n: usize, damping: f64) 
 
 /// Eliminates the finished rows `above` from the rows of a panel, the first of which is row `i`.
 #[inline(always)]
-fn subtract_all<S: Simd>(simd: S, panel: &mut [Wide], above: &[Wide], stride: usize, i: usize) {
+fn subtract_all<S: Simd>(simd: S, panel: &mut [LaneBlock], above: &[LaneBlock], stride: usize, i: usize) {
     let (first, lane) = (i / WIDTH, i % WIDTH);
     for block in first..stride {
         for part in parts(simd) {
-            let mut values: [Lanes<S>; PANEL] = each(
+            let mut values: [Lanes<S>; PANEL] = from_index(
                 simd,
                 #[inline(always)]
                 |k| Lanes::load(simd, &panel[k * stride + block], part),
@@ -97,7 +97,7 @@ fn subtract_all<S: Simd>(simd: S, panel: &mut [Wide], above: &[Wide], stride: us
 
 /// `row -= factor · other`.
 #[inline(always)]
-fn subtract<S: Simd>(simd: S, row: &mut [Wide], other: &[Wide], factor: f64) {
+fn subtract<S: Simd>(simd: S, row: &mut [LaneBlock], other: &[LaneBlock], factor: f64) {
     let factor = Lanes::splat(simd, factor);
     for (wide, other) in row.iter_mut().zip(other) {
         for part in parts(simd) {
@@ -112,7 +112,7 @@ fn subtract<S: Simd>(simd: S, row: &mut [Wide], other: &[Wide], factor: f64) {
 #[inline(always)]
 fn lower_solve<S: Simd>(simd: S, factor: &Factor, x: &mut [f64]) {
     let stride = factor.n.div_ceil(WIDTH);
-    let mut wide = vec![Wide::ZERO; stride];
+    let mut wide = vec![LaneBlock::ZERO; stride];
     for (wide, x) in wide.iter_mut().zip(x.chunks(WIDTH)) {
         wide.0[..x.len()].copy_from_slice(x);
     }
@@ -128,7 +128,7 @@ fn lower_solve<S: Simd>(simd: S, factor: &Factor, x: &mut [f64]) {
 pub(crate) fn solve<S: Simd>(simd: S, factor: &Factor, x: &mut [f64]) {
     lower_solve(simd, factor, x);
     let stride = factor.n.div_ceil(WIDTH);
-    let mut found = vec![Wide::ZERO; stride];
+    let mut found = vec![LaneBlock::ZERO; stride];
     for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(factor.n).enumerate().rev() {
         let (block, lane) = (i / WIDTH, i % WIDTH);
         let mut sum = Lanes::splat(simd, 0.0);
@@ -149,7 +149,7 @@ pub(crate) fn solve<S: Simd>(simd: S, factor: &Factor, x: &mut [f64]) {
 pub(crate) fn inverse<S: Simd>(simd: S, factor: &Factor) -> Vec<f64> {
     let n = factor.n;
     let stride = n.div_ceil(WIDTH).max(1);
-    let mut lower = vec![Wide::ZERO; n * stride];
+    let mut lower = vec![LaneBlock::ZERO; n * stride];
     for (i, &pivot) in factor.inverses.iter().enumerate() {
         let (done, own) = lower.split_at_mut(i * stride);
         own[i / WIDTH].0[i % WIDTH] = 1.0;
@@ -168,7 +168,7 @@ pub(crate) fn inverse<S: Simd>(simd: S, factor: &Factor) -> Vec<f64> {
     let mut inverse = vec![0.0; n * n];
     for i in 0..n {
         for block in i / WIDTH..stride {
-            let mut wide = Wide::ZERO;
+            let mut wide = LaneBlock::ZERO;
             for part in parts(simd) {
                 let mut sum = Lanes::splat(simd, 0.0);
                 for row in lower.chunks_exact(stride).skip(block * WIDTH) {

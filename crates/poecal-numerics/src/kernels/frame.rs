@@ -8,11 +8,11 @@ use super::vector::{Lanes, Vectors};
 /// A frame in the device's axes, by rows: a component of the directions x, y, z and of the origin. In this order a product needs few
 /// registers.
 #[derive(Clone, Copy)]
-pub(crate) struct Frame<S: Simd>(pub(crate) [[Lanes<S>; 4]; 3]);
+pub(crate) struct KernelFrame<S: Simd>(pub(crate) [[Lanes<S>; 4]; 3]);
 
-impl<S: Simd> Frame<S> {
+impl<S: Simd> KernelFrame<S> {
     #[inline(always)]
-    pub(crate) fn fixed(simd: S, step: &FixedMotion) -> Self {
+    pub(crate) fn from_step(simd: S, step: &FixedMotion) -> Self {
         let [x, y, z] = &step.columns;
         let mut rows = [[Lanes::splat(simd, 0.0); 4]; 3];
         for (k, row) in rows.iter_mut().enumerate() {
@@ -23,14 +23,14 @@ impl<S: Simd> Frame<S> {
                 Lanes::splat(simd, step.translation[k]),
             ];
         }
-        Frame(rows)
+        KernelFrame(rows)
     }
 
     /// The frame after a fixed motion.
     #[inline(always)]
-    pub(crate) fn then(mut self, simd: S, step: &FixedMotion) -> Self {
+    pub(crate) fn compose(mut self, simd: S, step: &FixedMotion) -> Self {
         for row in &mut self.0 {
-            *row = turned(simd, *row, step);
+            *row = turn_row(simd, *row, step);
         }
         self
     }
@@ -49,7 +49,7 @@ impl<S: Simd> Frame<S> {
 
 /// A row of a frame after a fixed motion.
 #[inline(always)]
-pub(crate) fn turned<S: Simd>(
+pub(crate) fn turn_row<S: Simd>(
     simd: S,
     [x, y, z, origin]: [Lanes<S>; 4],
     step: &FixedMotion,
@@ -66,7 +66,7 @@ pub(crate) fn turned<S: Simd>(
 
 /// A row of a frame after a joint's own motion: a rotation about z by `(cos θ, sin θ)` or a translation along it by `(θ, 0)`.
 #[inline(always)]
-pub(crate) fn moved<S: Simd>(
+pub(crate) fn move_row<S: Simd>(
     [x, y, z, origin]: [Lanes<S>; 4],
     turns: bool,
     cosine: Lanes<S>,

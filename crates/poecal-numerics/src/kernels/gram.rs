@@ -2,12 +2,12 @@
 
 use pulp::Simd;
 
-use super::vector::{Lanes, WIDTH, Wide, parts};
+use super::vector::{LaneBlock, Lanes, WIDTH, parts};
 
 /// Columns of one side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
 pub const TILE: usize = 3;
 
-/// Length, in `Wide`s, of the accumulators of all tiles of this number of columns, for vectors of `lanes` lanes.
+/// Length, in `LaneBlock`s, of the accumulators of all tiles of this number of columns, for vectors of `lanes` lanes.
 pub(crate) fn sums_len(columns: usize, lanes: usize) -> usize {
     let tiles = columns / TILE;
     (tiles * (tiles + 1) / 2 * TILE * TILE * lanes).div_ceil(WIDTH)
@@ -18,10 +18,10 @@ pub(crate) fn sums_len(columns: usize, lanes: usize) -> usize {
 #[inline(always)]
 pub(crate) fn add_products<S: Simd>(
     simd: S,
-    jacobian: &[Wide],
+    jacobian: &[LaneBlock],
     (stride, used): (usize, usize),
     columns: usize,
-    sums: &mut [Wide],
+    sums: &mut [LaneBlock],
     needed: impl Fn(usize, usize) -> bool,
 ) {
     let mut at = 0;
@@ -44,8 +44,8 @@ pub(crate) fn add_products<S: Simd>(
 #[inline(always)]
 fn tile<S: Simd>(
     simd: S,
-    left: &[Wide],
-    right: &[Wide],
+    left: &[LaneBlock],
+    right: &[LaneBlock],
     stride: usize,
     used: usize,
 ) -> [Lanes<S>; TILE * TILE] {

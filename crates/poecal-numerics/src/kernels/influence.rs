@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 use super::dense::Factor;
-use super::vector::{Lanes, Wide, each, parts};
+use super::vector::{LaneBlock, Lanes, from_index, parts};
 
 /// Length of a row's residual: three numbers of a position, three of a rotation.
 pub const NUMBERS: usize = 6;
@@ -15,17 +15,17 @@ pub(crate) fn influences<S: Simd>(
     simd: S,
     factor: &Factor,
     shifts: usize,
-    jacobian: &mut [[Wide; NUMBERS]],
-    residual: &[Wide; NUMBERS],
-    weight: &Wide,
+    jacobian: &mut [[LaneBlock; NUMBERS]],
+    residual: &[LaneBlock; NUMBERS],
+    weight: &LaneBlock,
     least: f64,
-) -> [Wide; 2] {
-    let mut found = [Wide::ZERO; 2];
+) -> [LaneBlock; 2] {
+    let mut found = [LaneBlock::ZERO; 2];
     let jacobian = &mut jacobian[..factor.n];
     for part in parts(simd) {
         for i in 0..factor.n {
             let (done, later) = jacobian.split_at_mut(i);
-            let mut own: [Lanes<S>; NUMBERS] = each(
+            let mut own: [Lanes<S>; NUMBERS] = from_index(
                 simd,
                 #[inline(always)]
                 |k| Lanes::load(simd, &later[0][k], part),
@@ -34,7 +34,7 @@ pub(crate) fn influences<S: Simd>(
             let mut above = factor.column(i);
             for (column, value) in moved.iter().zip(&mut above) {
                 let value = Lanes::splat(simd, value);
-                own = each(
+                own = from_index(
                     simd,
                     #[inline(always)]
                     |k| match own[k] {
@@ -45,7 +45,7 @@ pub(crate) fn influences<S: Simd>(
             }
             for (column, value) in turned.iter().zip(above) {
                 let value = Lanes::splat(simd, value);
-                own = each(
+                own = from_index(
                     simd,
                     #[inline(always)]
                     |k| Lanes::load(simd, &column[k], part).times_from(value, own[k]),
@@ -56,18 +56,18 @@ pub(crate) fn influences<S: Simd>(
                 (own * inverse).store(wide, part);
             }
         }
-        let hat = squared(simd, jacobian, part);
+        let hat = sum_products(simd, jacobian, part);
         let trace = (1..NUMBERS).fold(hat[0][0], |sum, k| sum + hat[k][k]);
         trace.store(&mut found[0], part);
         let weight = Lanes::load(simd, weight, part);
         let whole = Lanes::splat(simd, 1.0);
-        let residual: [Lanes<S>; NUMBERS] = each(
+        let residual: [Lanes<S>; NUMBERS] = from_index(
             simd,
             #[inline(always)]
             |k| Lanes::load(simd, &residual[k], part),
         );
-        let left_out = solved(simd, &hat, -weight, Lanes::splat(simd, 1.0 + least), residual);
-        let judged = solved(simd, &hat, whole - weight, whole, left_out);
+        let left_out = solve_lanes(simd, &hat, -weight, Lanes::splat(simd, 1.0 + least), residual);
+        let judged = solve_lanes(simd, &hat, whole - weight, whole, left_out);
         let sum = (1..NUMBERS).fold(residual[0] * judged[0], |sum, k| residual[k].times_plus(judged[k], sum));
         sum.store(&mut found[1], part);
     }
@@ -76,16 +76,20 @@ pub(crate) fn influences<S: Simd>(
 
 /// `Σ yᵢ yᵢᵀ` of these columns, its upper triangle.
 #[inline(always)]
-fn squared<S: Simd>(simd: S, columns: &[[Wide; NUMBERS]], part: usize) -> [[Lanes<S>; NUMBERS]; NUMBERS] {
+fn sum_products<S: Simd>(
+    simd: S,
+    columns: &[[LaneBlock; NUMBERS]],
+    part: usize,
+) -> [[Lanes<S>; NUMBERS]; NUMBERS] {
     let mut sum = [[Lanes::splat(simd, 0.0); NUMBERS]; NUMBERS];
     for column in columns {
-        let own: [Lanes<S>; NUMBERS] = each(
+        let own: [Lanes<S>; NUMBERS] = from_index(
             simd,
             #[inline(always)]
             |k| Lanes::load(simd, &column[k], part),
         );
         for (k, row) in sum.iter_mut().enumerate() {
-            *row = each(
+            *row = from_index(
                 simd,
                 #[inline(always)]
                 |l| if l < k { row[l] } else { own[k].times_plus(own[l], row[l]) },
@@ -97,7 +101,7 @@ fn squared<S: Simd>(simd: S, columns: &[[Wide; NUMBERS]], part: usize) -> [[Lane
 
 /// Solution of `(diagonal I + share H) x = b`. A pivot that is not positive, by rounding, counts as infinite.
 #[inline(always)]
-fn solved<S: Simd>(
+fn solve_lanes<S: Simd>(
     simd: S,
     hat: &[[Lanes<S>; NUMBERS]; NUMBERS],
     share: Lanes<S>,
@@ -114,12 +118,12 @@ fn solved<S: Simd>(
     }
     let mut inverses = [diagonal; NUMBERS];
     for k in 0..NUMBERS {
-        inverses[k] = Lanes::splat(simd, 1.0).over(rows[k][k], 0.0);
+        inverses[k] = Lanes::splat(simd, 1.0).divide_or(rows[k][k], 0.0);
         let own = rows[k];
         for l in k + 1..NUMBERS {
             let factor = own[l] * inverses[k];
             let row = rows[l];
-            rows[l] = each(
+            rows[l] = from_index(
                 simd,
                 #[inline(always)]
                 |m| own[m].times_from(factor, row[m]),

@@ -5,43 +5,55 @@
 use pulp::Simd;
 
 use super::batch::{Batch, RowWrench};
-use super::frame::Frame;
+use super::frame::KernelFrame;
 use super::gram::{TILE, add_products};
-use super::plan::{Along, Arm, Plan};
+use super::plan::{ArmAtEstimate, KernelPlan, PlaceComponent};
 use super::shape::ShapedRows;
-use super::totals::Totals;
-use super::turn::Turn;
-use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
-use super::work::{WORK, Work};
+use super::totals::PassTotals;
+use super::turn::ResidualRotations;
+use super::vector::{LaneBlock, Lanes, Vectors, WIDTH, parts};
+use super::work::{PassWork, WORK};
 
 /// Sums over all rows of `blocks`.
 #[inline(always)]
-pub(crate) fn sum_products<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+pub(crate) fn sum_products<S: Simd>(simd: S, arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals {
     sum::<S, true, false>(simd, arm, blocks)
 }
 
 /// The same sums without products of columns.
 #[inline(always)]
-pub(crate) fn sum_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+pub(crate) fn sum_gradient<S: Simd>(simd: S, arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals {
     sum::<S, false, false>(simd, arm, blocks)
 }
 
-/// [`sum_products`] of a plain plan ([`Plan::is_plain`]).
+/// [`sum_products`] of a plain plan ([`KernelPlan::is_plain`]).
 #[inline(always)]
-pub(crate) fn sum_plain_products<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+pub(crate) fn sum_plain_products<S: Simd>(
+    simd: S,
+    arm: &ArmAtEstimate<'_>,
+    blocks: &[LaneBlock],
+) -> PassTotals {
     sum::<S, true, true>(simd, arm, blocks)
 }
 
 /// [`sum_gradient`] of a plain plan.
 #[inline(always)]
-pub(crate) fn sum_plain_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+pub(crate) fn sum_plain_gradient<S: Simd>(
+    simd: S,
+    arm: &ArmAtEstimate<'_>,
+    blocks: &[LaneBlock],
+) -> PassTotals {
     sum::<S, false, true>(simd, arm, blocks)
 }
 
 /// Sums over all rows of `blocks`; products of columns only if `FULL`. `PLAIN` rows are compiled apart: beside the branches for all others
 /// their numbers do not stay in registers.
 #[inline(always)]
-fn sum<S: Simd, const FULL: bool, const PLAIN: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+fn sum<S: Simd, const FULL: bool, const PLAIN: bool>(
+    simd: S,
+    arm: &ArmAtEstimate<'_>,
+    blocks: &[LaneBlock],
+) -> PassTotals {
     let plan = arm.plan;
     // A pass does not call another, so the buffer is free; if it were not, there would be another.
     let mut own = WORK.take();
@@ -77,7 +89,7 @@ fn sum<S: Simd, const FULL: bool, const PLAIN: bool>(simd: S, arm: &Arm<'_>, blo
         }
     }
     let gradient = work.shift_gradient.iter().chain(&work.turn_gradient).chain(&work.given_gradient);
-    let totals = Totals {
+    let totals = PassTotals {
         products: add_up(simd, &work.products),
         turned: add_up(simd, &work.turned_products),
         gradient: gradient.map(total).collect(),
@@ -89,7 +101,7 @@ fn sum<S: Simd, const FULL: bool, const PLAIN: bool>(simd: S, arm: &Arm<'_>, blo
 
 /// Adds the products of the waiting columns.
 #[inline(always)]
-fn multiply<S: Simd, const PLAIN: bool>(simd: S, plan: &Plan, work: &mut Work, filled: usize) {
+fn multiply<S: Simd, const PLAIN: bool>(simd: S, plan: &KernelPlan, work: &mut PassWork, filled: usize) {
     let columns = plan.columns().next_multiple_of(TILE);
     let stride = 3 * work.waiting;
     let used = if plan.along.is_some() { filled } else { 3 * filled };
@@ -106,7 +118,7 @@ fn multiply<S: Simd, const PLAIN: bool>(simd: S, plan: &Plan, work: &mut Work, f
 
 /// Sums over the lanes of each vector.
 #[inline(always)]
-fn add_up<S: Simd>(simd: S, sums: &[Wide]) -> Vec<f64> {
+fn add_up<S: Simd>(simd: S, sums: &[LaneBlock]) -> Vec<f64> {
     let mut out = Vec::with_capacity(sums.len() * (WIDTH / S::F64_LANES));
     for wide in sums {
         for part in parts(simd) {
@@ -117,7 +129,7 @@ fn add_up<S: Simd>(simd: S, sums: &[Wide]) -> Vec<f64> {
 }
 
 /// The sum over all lanes.
-fn total(sum: &Wide) -> f64 {
+fn total(sum: &LaneBlock) -> f64 {
     let [a, b, c, d, e, f, g, h] = sum.0;
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
@@ -127,15 +139,15 @@ fn total(sum: &Wide) -> f64 {
 #[inline(always)]
 pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     simd: S,
-    arm: &Arm<'_>,
-    (block, first): (&[Wide], usize),
-    work: &mut Work,
+    arm: &ArmAtEstimate<'_>,
+    (block, first): (&[LaneBlock], usize),
+    work: &mut PassWork,
     filled: usize,
     part: usize,
 ) -> [Vectors<S>; 2] {
     let none = [Vectors([Lanes::splat(simd, 0.0); 3]); 2];
-    let Arm { plan, steps, end, .. } = *arm;
-    let Work {
+    let ArmAtEstimate { plan, steps, end, .. } = *arm;
+    let PassWork {
         jacobian,
         turned,
         axes,
@@ -167,7 +179,8 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
         let whole = Lanes::splat(simd, 1.0);
         let last =
             batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), whole, per_length);
-        let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
+        let target =
+            if plan.joints.is_empty() { KernelFrame::from_step(simd, end) } else { last.compose(simd, end) };
         let rows = ShapedRows::new((shape, plan.given), first + part * S::F64_LANES, &target, weight);
         let residuals = rows.residual(simd);
         let [force, torque] = rows.wrench(simd);
@@ -184,7 +197,8 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
         return residuals;
     }
     let last = batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
-    let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
+    let target =
+        if plan.joints.is_empty() { KernelFrame::from_step(simd, end) } else { last.compose(simd, end) };
     let place = Vectors::load(simd, position, part);
     let (direction, force, residual) = match plan.along {
         Some(along) if !PLAIN => {
@@ -204,7 +218,8 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     if let [x, y, z] = measured.as_chunks::<3>().0 {
         let measured =
             [Vectors::load(simd, x, part), Vectors::load(simd, y, part), Vectors::load(simd, z, part)];
-        let found = Turn::new(simd, &measured, &[target.column(0), target.column(1), target.column(2)]);
+        let found =
+            ResidualRotations::new(simd, &measured, &[target.column(0), target.column(1), target.column(2)]);
         let ratio = Lanes::load(simd, &noise[1], part);
         let whitened = found.r.scale(weight * ratio);
         squares = squares + whitened.dot(whitened);
@@ -229,19 +244,19 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
 #[inline(always)]
 fn one_number<S: Simd>(
     simd: S,
-    along: Along,
+    along: PlaceComponent,
     measured: Vectors<S>,
     predicted: Vectors<S>,
 ) -> (Vectors<S>, Lanes<S>) {
     match along {
-        Along::Height => {
+        PlaceComponent::Height => {
             let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
             (Vectors([zero, zero, one]), measured.0[2] - predicted.0[2])
         }
-        Along::Distance => {
+        PlaceComponent::Distance => {
             let distance = predicted.dot(predicted).sqrt();
             // There is one division: it takes as long as a dozen products.
-            let inverse = Lanes::splat(simd, 1.0).over(distance, 0.0);
+            let inverse = Lanes::splat(simd, 1.0).divide_or(distance, 0.0);
             (predicted.scale(inverse), measured.0[0] - distance)
         }
     }
@@ -252,7 +267,7 @@ fn one_number<S: Simd>(
 #[inline(always)]
 fn project<S: Simd>(
     simd: S,
-    columns: &mut [[Wide; 3]],
+    columns: &mut [[LaneBlock; 3]],
     (count, stride): (usize, usize),
     filled: usize,
     direction: Vectors<S>,

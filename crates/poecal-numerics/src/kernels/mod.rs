@@ -6,7 +6,7 @@
 //! `#[inline(always)]` and loops are plain loops: a closure, or a `map` of arrays, may not be compiled for the vector instructions, and each number
 //! then costs a call.
 //!
-//! A kernel has no measurements and no parameters: `poecal-fit`'s `problem/fast.rs` translates a problem into a [`Plan`] (its columns) and
+//! A kernel has no measurements and no parameters: `poecal-fit`'s `problem/fast.rs` translates a problem into a [`KernelPlan`] (its columns) and
 //! [`PackedRows`] (numbers side by side), and stores the sums in their places. The kernels serve every problem:
 //!
 //! - points and poses: the scalar weight of a row stays a scalar, and rotation products follow from those of translation columns (theory.md
@@ -41,17 +41,20 @@ mod turn;
 mod vector;
 mod work;
 
-pub use corners::{Brown, CornerProducts, Corners, MOTIONS};
+pub use corners::{BrownConrady, CornerProducts, Corners, MOTIONS};
 pub use dense::Factor;
-pub use errors::Frames;
+pub use errors::FrameColumns;
 pub use gram::TILE;
 pub use influence::NUMBERS;
-pub use plan::{Along, Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData, TermPlan};
-pub use rows::{Shape, ShapedRow};
+pub use plan::{
+    ArmAtEstimate, DevicePlan, FixedMotion, JointPlan, KernelPlan, PackedRows, PlaceComponent, TermPlan,
+    UnpackedRow,
+};
+pub use rows::{RowFunctions, ShapedRow};
 pub use simd::{
     SimdLevel, by_best, cholesky, corner_products, cosines_and_sines, errors, influences, inverse,
     last_links, simd_levels, solve, stated_level, sum_gradient, sum_plain_gradient, sum_plain_products,
     sum_products, whitened_columns,
 };
-pub use totals::{Tiles, Totals};
-pub use vector::{WIDTH, Wide};
+pub use totals::{PassTotals, TileIndex};
+pub use vector::{LaneBlock, WIDTH};

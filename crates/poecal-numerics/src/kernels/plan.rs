@@ -1,8 +1,8 @@
 //! Input of the kernels: an arm's frames, its columns, and rows side by side.
 
 use super::gram::TILE;
-use super::rows::Shape;
-use super::vector::{WIDTH, Wide};
+use super::rows::RowFunctions;
+use super::vector::{LaneBlock, WIDTH};
 use poecal_arm::lie::Pose;
 
 /// A fixed motion: three columns of a rotation, and a translation in metres.
@@ -50,7 +50,7 @@ pub struct DevicePlan {
 
 /// One number of a target's position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Along {
+pub enum PlaceComponent {
     /// Height, along the device's z.
     Height,
     /// Distance from the device's origin.
@@ -60,7 +60,7 @@ pub enum Along {
 /// Columns of one group of rows: *shifts* are translation columns (a direction times the row's weight); *turns* are rotation columns
 /// about the direction of one of the shifts, `w = v / L`, of which the first `tilts` also translate.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct KernelPlan {
     /// Columns of the joints.
     pub joints: Vec<JointPlan>,
     /// True if these are all joints of a row in their order, none backward, and their values do not depend on the estimate.
@@ -87,16 +87,16 @@ pub struct Plan {
     pub framed: bool,
     /// Number of columns that the rows themselves supply, after all others.
     pub given: usize,
-    /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`Arm::shape`]); else 0.
+    /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`ArmAtEstimate::shape`]); else 0.
     pub shaped: usize,
     /// The direction along which a row measured one number, if it did not measure a position.
-    pub along: Option<Along>,
+    pub along: Option<PlaceComponent>,
     /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of the translation
     /// columns (theory.md §6 (28a)).
     pub ratio: Option<f64>,
 }
 
-impl Plan {
+impl KernelPlan {
     /// Columns of position rows; all columns of shaped rows.
     pub fn columns(&self) -> usize {
         self.shifts + if self.shaped > 0 { self.turns.len() + self.given } else { self.tilts }
@@ -155,11 +155,11 @@ impl Plan {
 #[derive(Clone, Debug, Default)]
 pub struct PackedRows {
     /// The numbers of one block after another.
-    pub blocks: Vec<Wide>,
+    pub blocks: Vec<LaneBlock>,
 }
 
 /// One row to be packed.
-pub struct RowData<'a> {
+pub struct UnpackedRow<'a> {
     /// `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub joints: &'a [(f64, f64)],
     /// The measured position in the device frame, metres.
@@ -179,22 +179,23 @@ impl PackedRows {
     #[inline(always)]
     pub fn pack<'a>(
         &mut self,
-        plan: &Plan,
+        plan: &KernelPlan,
         count: usize,
-        row: impl Fn(usize) -> RowData<'a>,
+        row: impl Fn(usize) -> UnpackedRow<'a>,
         joint: impl Fn(usize, usize) -> (f64, f64),
         term: impl Fn(usize, usize) -> f64,
     ) {
         let len = plan.block_len();
         let blocks = count.div_ceil(WIDTH);
-        self.blocks.resize(blocks * len, Wide::ZERO);
+        self.blocks.resize(blocks * len, LaneBlock::ZERO);
         for (index, block) in self.blocks.chunks_exact_mut(len).enumerate() {
             let first = index * WIDTH;
             // The last block is padded with its last row, at weight zero.
             let at = |lane: usize| (first + lane).min(count - 1);
             // Rows are made one by one: functions that build arrays may not be inlined, and each row then costs calls.
             let [a, b, c, d, e, f, g, h] = [0, 1, 2, 3, 4, 5, 6, 7].map(at);
-            let rows: [RowData<'a>; WIDTH] = [row(a), row(b), row(c), row(d), row(e), row(f), row(g), row(h)];
+            let rows: [UnpackedRow<'a>; WIDTH] =
+                [row(a), row(b), row(c), row(d), row(e), row(f), row(g), row(h)];
             put(plan, block, &rows);
             if !plan.in_order {
                 let (_, joints) = block.split_at_mut(len - plan.terms.len() - 2 * plan.joints.len());
@@ -205,7 +206,7 @@ impl PackedRows {
                     }
                 }
                 for (k, wide) in terms.iter_mut().enumerate() {
-                    *wide = Wide(std::array::from_fn(|lane| term(at(lane), k)));
+                    *wide = LaneBlock(std::array::from_fn(|lane| term(at(lane), k)));
                 }
             }
             if let Some(weights) = block.first_mut() {
@@ -217,13 +218,13 @@ impl PackedRows {
 
 /// Writes a block, number after number, each of all rows.
 #[inline(always)]
-fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
+fn put(plan: &KernelPlan, block: &mut [LaneBlock], rows: &[UnpackedRow<'_>; WIDTH]) {
     let Some((noise, rest)) = block.split_first_chunk_mut::<2>() else { return };
-    noise[0] = Wide(std::array::from_fn(|lane| rows[lane].weight));
-    noise[1] = Wide(std::array::from_fn(|lane| rows[lane].orientation.map_or(0.0, |(_, ratio)| ratio)));
+    noise[0] = LaneBlock(std::array::from_fn(|lane| rows[lane].weight));
+    noise[1] = LaneBlock(std::array::from_fn(|lane| rows[lane].orientation.map_or(0.0, |(_, ratio)| ratio)));
     let Some((position, rest)) = rest.split_first_chunk_mut::<3>() else { return };
     for (k, wide) in position.iter_mut().enumerate() {
-        *wide = Wide(std::array::from_fn(|lane| rows[lane].position[k]));
+        *wide = LaneBlock(std::array::from_fn(|lane| rows[lane].position[k]));
     }
     let (turned, joints) = rest.split_at_mut(if rows[0].orientation.is_some() { 9 } else { 0 });
     if let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h)] =
@@ -231,7 +232,7 @@ fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
     {
         let columns = [a, b, c, d, e, f, g, h];
         for (k, wide) in turned.iter_mut().enumerate() {
-            *wide = Wide(std::array::from_fn(|lane| columns[lane][k / 3][k % 3]));
+            *wide = LaneBlock(std::array::from_fn(|lane| columns[lane][k / 3][k % 3]));
         }
     }
     if !plan.in_order {
@@ -249,15 +250,15 @@ fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
 
 /// An arm at an estimate: its columns, its relative frames at zero joint values, and the target in the last one.
 #[derive(Clone, Copy)]
-pub struct Arm<'a> {
+pub struct ArmAtEstimate<'a> {
     /// Columns.
-    pub plan: &'a Plan,
+    pub plan: &'a KernelPlan,
     /// Frame of each joint in the one before, at zero joint values.
     pub steps: &'a [FixedMotion],
     /// The target in the last frame.
     pub end: &'a FixedMotion,
-    /// The rows' own functions, if they have them ([`Plan::shaped`]).
-    pub shape: Option<&'a dyn Shape>,
+    /// The rows' own functions, if they have them ([`KernelPlan::shaped`]).
+    pub shape: Option<&'a dyn RowFunctions>,
     /// True if the products may omit the curvature of the logarithm, to save time (theory.md §6 (28a)).
     pub nearly: bool,
 }

@@ -22,7 +22,7 @@ impl ShapedRow {
 }
 
 /// Functions of the rows of a pass.
-pub trait Shape: Sync {
+pub trait RowFunctions: Sync {
     /// Function of the row with this index among the packed ones, for its predicted target. Writes the columns of unknowns that the kernels
     /// do not have.
     fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow;

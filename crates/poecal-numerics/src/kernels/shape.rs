@@ -3,40 +3,40 @@
 
 use pulp::Simd;
 
-use super::frame::Frame;
+use super::frame::KernelFrame;
 use super::influence::NUMBERS;
-use super::plan::Plan;
-use super::rows::{HALF, Shape};
-use super::vector::{Lanes, Vectors, Wide};
+use super::plan::KernelPlan;
+use super::rows::{HALF, RowFunctions};
+use super::vector::{LaneBlock, Lanes, Vectors};
 use poecal_arm::lie::Pose;
 
 /// Shaped rows side by side.
 pub(crate) struct ShapedRows {
-    residual: [Wide; NUMBERS],
-    sensitivity: [[Wide; 2 * HALF]; NUMBERS],
+    residual: [LaneBlock; NUMBERS],
+    sensitivity: [[LaneBlock; 2 * HALF]; NUMBERS],
     /// Whitened columns of unknowns that the kernels do not have.
-    given: Vec<[Wide; NUMBERS]>,
+    given: Vec<[LaneBlock; NUMBERS]>,
 }
 
 impl ShapedRows {
     /// Shaped rows of one vector, the first of them at `first`; rows of weight zero are padding.
     #[inline(never)]
     pub(crate) fn new<S: Simd>(
-        (shape, given): (&dyn Shape, usize),
+        (shape, given): (&dyn RowFunctions, usize),
         first: usize,
-        target: &Frame<S>,
+        target: &KernelFrame<S>,
         weight: Lanes<S>,
     ) -> Self {
-        let mut frames = [[Wide::ZERO; 4]; 3];
+        let mut frames = [[LaneBlock::ZERO; 4]; 3];
         for (wide, row) in frames.iter_mut().zip(&target.0) {
             wide.iter_mut().zip(row).for_each(|(wide, number)| number.store(wide, 0));
         }
-        let mut weights = Wide::ZERO;
+        let mut weights = LaneBlock::ZERO;
         weight.store(&mut weights, 0);
         let mut rows = ShapedRows {
-            residual: [Wide::ZERO; NUMBERS],
-            sensitivity: [[Wide::ZERO; 2 * HALF]; NUMBERS],
-            given: vec![[Wide::ZERO; NUMBERS]; given],
+            residual: [LaneBlock::ZERO; NUMBERS],
+            sensitivity: [[LaneBlock::ZERO; 2 * HALF]; NUMBERS],
+            given: vec![[LaneBlock::ZERO; NUMBERS]; given],
         };
         let mut columns = vec![[0.0; NUMBERS]; given];
         for lane in (0..S::F64_LANES).filter(|&lane| weights.0[lane] != 0.0) {
@@ -83,9 +83,9 @@ impl ShapedRows {
     pub(crate) fn add_given<S: Simd, const FULL: bool>(
         &self,
         simd: S,
-        plan: &Plan,
-        (columns, stride): (&mut [[Wide; HALF]], usize),
-        gradient: &mut [Wide],
+        plan: &KernelPlan,
+        (columns, stride): (&mut [[LaneBlock; HALF]], usize),
+        gradient: &mut [LaneBlock],
         part: usize,
     ) {
         let first = plan.shifts + plan.turns.len();
@@ -103,13 +103,13 @@ impl ShapedRows {
     }
 
     /// Replaces the columns of one vector of rows, motions of the target, by the changes of their numbers. These are in `slots`
-    /// groups of three numbers, each [`Wide`] triple after the one before.
+    /// groups of three numbers, each [`LaneBlock`] triple after the one before.
     #[inline(always)]
     pub(crate) fn project<S: Simd>(
         &self,
         simd: S,
-        plan: &Plan,
-        columns: &mut [[Wide; HALF]],
+        plan: &KernelPlan,
+        columns: &mut [[LaneBlock; HALF]],
         stride: usize,
         part: usize,
     ) {
@@ -131,10 +131,10 @@ impl ShapedRows {
     fn write<S: Simd>(
         &self,
         simd: S,
-        plan: &Plan,
+        plan: &KernelPlan,
         moved: Option<Vectors<S>>,
         turned: Option<Vectors<S>>,
-        out: &mut [[Wide; HALF]],
+        out: &mut [[LaneBlock; HALF]],
         part: usize,
     ) {
         for number in 0..plan.slots() * HALF {

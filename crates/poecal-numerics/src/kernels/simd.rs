@@ -10,13 +10,13 @@ use pulp::wasm::Simd128;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V3_512b, V4};
 
-use super::corners::{self, Brown, CornerProducts, Corners};
+use super::corners::{self, BrownConrady, CornerProducts, Corners};
 use super::dense::{self, Factor};
-use super::errors::{self, Frames};
+use super::errors::{self, FrameColumns};
 use super::influence::{self, NUMBERS};
-use super::plan::{Arm, FixedMotion};
-use super::totals::Totals;
-use super::vector::Wide;
+use super::plan::{ArmAtEstimate, FixedMotion};
+use super::totals::PassTotals;
+use super::vector::LaneBlock;
 use super::{columns, kernel, sincos, tip};
 
 /// Instruction set of the kernels. A value of this type proves that this machine has it.
@@ -59,7 +59,7 @@ impl SimdLevel {
     /// Level of this process: the best of this machine, or the one that the variable `POECAL_SIMD` names (`plain`, `avx2`, `avx512`). An
     /// unknown name, or the name of an absent level, has no effect; [`stated_level`] refuses it.
     #[must_use]
-    pub fn best() -> Self {
+    pub fn best_level() -> Self {
         LEVEL.as_ref().copied().unwrap_or_else(|_| best_detected())
     }
 
@@ -82,7 +82,7 @@ impl SimdLevel {
     }
 }
 
-/// Level of this process, [`SimdLevel::best`]; the start of a process requests it before any computation.
+/// Level of this process, [`SimdLevel::best_level`]; the start of a process requests it before any computation.
 ///
 /// # Errors
 ///
@@ -103,30 +103,30 @@ fn limited_to(word: &str) -> Result<SimdLevel, String> {
 
 /// Best level of this machine.
 fn best_detected() -> SimdLevel {
-    detected().unwrap_or(SimdLevel::BASELINE)
+    detect_level().unwrap_or(SimdLevel::BASELINE)
 }
 
 /// The best vector instructions of this machine.
 #[cfg(target_arch = "x86_64")]
-fn detected() -> Option<SimdLevel> {
+fn detect_level() -> Option<SimdLevel> {
     V4::try_new().map(SimdLevel::Avx512).or_else(|| V3::try_new().map(SimdLevel::Avx2))
 }
 
 /// The best vector instructions of this machine.
 #[cfg(target_arch = "aarch64")]
-fn detected() -> Option<SimdLevel> {
+fn detect_level() -> Option<SimdLevel> {
     Neon::try_new().map(SimdLevel::Neon)
 }
 
 /// WebAssembly's vectors, if the module was compiled for them: a module cannot query them, and one with others is refused as a whole.
 #[cfg(target_arch = "wasm32")]
-fn detected() -> Option<SimdLevel> {
+fn detect_level() -> Option<SimdLevel> {
     Simd128::try_new().map(SimdLevel::Simd128)
 }
 
 /// No vector instructions: the kernels are compiled for none here.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
-fn detected() -> Option<SimdLevel> {
+fn detect_level() -> Option<SimdLevel> {
     None
 }
 
@@ -150,7 +150,7 @@ pub fn simd_levels() -> Vec<SimdLevel> {
 /// Runs `work` in a function that is compiled for the best instructions of this machine, with all code inlined into it; `work` must itself
 /// be marked `#[inline(always)]`. Without fused products, which the compiler never makes by itself, the bits are the same at all levels.
 pub fn by_best<T>(work: impl FnOnce() -> T) -> T {
-    match SimdLevel::best() {
+    match SimdLevel::best_level() {
         #[cfg(target_arch = "x86_64")]
         SimdLevel::Avx512(simd) => simd.vectorize(work),
         #[cfg(target_arch = "x86_64")]
@@ -209,35 +209,35 @@ macro_rules! dispatch {
 
 dispatch!(
     /// Sums over rows, with products of columns.
-    kernel::sum_products(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+    kernel::sum_products(arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals
 );
 dispatch!(
     /// Sums over rows, without products of columns.
-    kernel::sum_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+    kernel::sum_gradient(arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals
 );
 dispatch!(
     /// Sums over the rows of a plain plan, with products of columns.
-    kernel::sum_plain_products(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+    kernel::sum_plain_products(arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals
 );
 dispatch!(
     /// Sums over the rows of a plain plan, without products of columns.
-    kernel::sum_plain_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+    kernel::sum_plain_gradient(arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals
 );
 dispatch!(
     /// Writes columns and residuals of the rows of one block.
     columns::whitened_columns(
-        arm: &Arm<'_>,
-        block: &[Wide],
+        arm: &ArmAtEstimate<'_>,
+        block: &[LaneBlock],
         first: usize,
         places: &[(usize, f64)],
-        jacobian: &mut [[Wide; NUMBERS]],
-        residual: &mut [Wide; NUMBERS]
+        jacobian: &mut [[LaneBlock; NUMBERS]],
+        residual: &mut [LaneBlock; NUMBERS]
     )
 );
 dispatch!(
     /// Products of the derivatives of the corners of one picture at a pose; with those of each corner's point if it is unknown.
     corners::corner_products(
-        lens: &Brown,
+        lens: &BrownConrady,
         pose: &FixedMotion,
         corners: &[Corners],
         with_points: bool,
@@ -246,16 +246,16 @@ dispatch!(
 );
 dispatch!(
     /// Writes the frames of the last link.
-    tip::last_links(joints: &[(bool, FixedMotion)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3])
+    tip::last_links(joints: &[(bool, FixedMotion)], values: &[[LaneBlock; 2]], out: &mut [[LaneBlock; 4]; 3])
 );
 dispatch!(
     /// Writes errors of position and rotation.
     errors::errors(
-        links: &[[Wide; 4]; 3],
-        ends: &Frames,
-        measured: &Frames,
+        links: &[[LaneBlock; 4]; 3],
+        ends: &FrameColumns,
+        measured: &FrameColumns,
         framed: bool,
-        out: &mut [[Wide; 3]; 2]
+        out: &mut [[LaneBlock; 3]; 2]
     )
 );
 dispatch!(
@@ -280,9 +280,9 @@ dispatch!(
     influence::influences(
         factor: &Factor,
         shifts: usize,
-        jacobian: &mut [[Wide; NUMBERS]],
-        residual: &[Wide; NUMBERS],
-        weight: &Wide,
+        jacobian: &mut [[LaneBlock; NUMBERS]],
+        residual: &[LaneBlock; NUMBERS],
+        weight: &LaneBlock,
         least: f64
-    ) -> [Wide; 2]
+    ) -> [LaneBlock; 2]
 );

@@ -2,9 +2,9 @@
 
 use pulp::Simd;
 
-use super::frame::{Frame, moved, turned};
+use super::frame::{KernelFrame, move_row, turn_row};
 use super::plan::FixedMotion;
-use super::vector::{Lanes, Wide, parts};
+use super::vector::{LaneBlock, Lanes, parts};
 
 /// Writes the frame of the last link after all motions, `X T_n` of theory.md §4 (13), as rows of `[x, y, z, origin]`. The input has for
 /// each joint true if it is revolute, its frame in the one before at zero joint values, and `(cos θ, sin θ)` or `(θ, 0)`.
@@ -12,18 +12,23 @@ use super::vector::{Lanes, Wide, parts};
 pub(crate) fn last_links<S: Simd>(
     simd: S,
     joints: &[(bool, FixedMotion)],
-    values: &[[Wide; 2]],
-    out: &mut [[Wide; 4]; 3],
+    values: &[[LaneBlock; 2]],
+    out: &mut [[LaneBlock; 4]; 3],
 ) {
     for part in parts(simd) {
-        let mut link = Frame([[Lanes::splat(simd, 0.0); 4]; 3]);
+        let mut link = KernelFrame([[Lanes::splat(simd, 0.0); 4]; 3]);
         for (index, ((turns, step), [cosine, sine])) in joints.iter().zip(values).enumerate() {
             if index == 0 {
-                link = Frame::fixed(simd, step);
+                link = KernelFrame::from_step(simd, step);
             }
             let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
             for row in &mut link.0 {
-                *row = moved(if index == 0 { *row } else { turned(simd, *row, step) }, *turns, cosine, sine);
+                *row = move_row(
+                    if index == 0 { *row } else { turn_row(simd, *row, step) },
+                    *turns,
+                    cosine,
+                    sine,
+                );
             }
         }
         for (row, out) in link.0.iter().zip(&mut *out) {

@@ -3,8 +3,8 @@
 use super::gram::TILE;
 
 /// Sums of one pass over some rows.
-pub struct Totals {
-    /// Products of position columns, tile after tile: see [`Tiles`].
+pub struct PassTotals {
+    /// Products of position columns, tile after tile: see [`TileIndex`].
     pub products: Vec<f64>,
     /// Sums that rotation rows add to the products of rotation columns, in the same order.
     pub turned: Vec<f64>,
@@ -14,9 +14,9 @@ pub struct Totals {
     pub cost: f64,
 }
 
-impl Totals {
+impl PassTotals {
     /// Adds the sums of other rows.
-    pub fn add(&mut self, other: &Totals) {
+    pub fn add(&mut self, other: &PassTotals) {
         let pairs = [
             (&mut self.products, &other.products),
             (&mut self.turned, &other.turned),
@@ -31,20 +31,20 @@ impl Totals {
 
 /// Index of the product of columns `a ≤ b` in a sum of tiles: `left[a] + right[b]`.
 #[derive(Clone, Debug)]
-pub struct Tiles {
+pub struct TileIndex {
     /// Part of the index by the first column.
     pub left: Vec<usize>,
     /// Part of the index by the second column.
     pub right: Vec<usize>,
 }
 
-impl Tiles {
+impl TileIndex {
     /// Index for this number of columns.
     pub fn new(columns: usize) -> Self {
         let tiles = columns.div_ceil(TILE);
         // The tiles of row `r` follow those of the rows above, each one shorter; the first of its own is on the diagonal.
         let before = |r: usize| r * tiles - r * (r + 1) / 2;
-        Tiles {
+        TileIndex {
             left: (0..columns).map(|a| before(a / TILE) * TILE * TILE + a % TILE * TILE).collect(),
             right: (0..columns).map(|b| b / TILE * TILE * TILE + b % TILE).collect(),
         }

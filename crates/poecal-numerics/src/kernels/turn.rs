@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use pulp::Simd;
 
-use super::vector::{Lanes, Vectors, Wide};
+use super::vector::{LaneBlock, Lanes, Vectors};
 use poecal_arm::lie::{rotation, series};
 
 /// Squared sine below which the logarithm is a polynomial: residual rotations up to 14°. The first omitted terms are 2e-17 of
@@ -11,12 +11,12 @@ use poecal_arm::lie::{rotation, series};
 const SMALL: f64 = 1.0 / 16.0;
 
 /// Residual rotations `r = log(Y Rᵀ)` with the coefficient `k` of `J_r(r)⁻¹ = I + r̂/2 + k r̂²` (theory.md §4 (16)).
-pub(crate) struct Turn<S: Simd> {
+pub(crate) struct ResidualRotations<S: Simd> {
     pub(crate) r: Vectors<S>,
     k: Lanes<S>,
 }
 
-impl<S: Simd> Turn<S> {
+impl<S: Simd> ResidualRotations<S> {
     /// Logarithm of measured and predicted rotations, by their columns.
     #[inline(always)]
     pub(crate) fn new(simd: S, measured: &[Vectors<S>; 3], predicted: &[Vectors<S>; 3]) -> Self {
@@ -30,35 +30,35 @@ impl<S: Simd> Turn<S> {
         let sine_squared = sine.dot(sine);
         // A trace above one means an angle below π/2.
         if !sine_squared.are_below(SMALL, (-trace, -1.0)) {
-            return Self::large(simd, measured, predicted);
+            return Self::from_rotations(simd, measured, predicted);
         }
         let r = sine.scale(sine_squared.polynomial(series::ARCSINE));
-        Turn { r, k: r.dot(r).polynomial(series::COTC) }
+        ResidualRotations { r, k: r.dot(r).polynomial(series::COTC) }
     }
 
     /// The same row by row, for rotations of any size.
     #[cold]
     #[inline(never)]
-    fn large(simd: S, measured: &[Vectors<S>; 3], predicted: &[Vectors<S>; 3]) -> Self {
+    fn from_rotations(simd: S, measured: &[Vectors<S>; 3], predicted: &[Vectors<S>; 3]) -> Self {
         let apart = |columns: &[Vectors<S>; 3]| {
-            let mut wide = [[Wide::ZERO; 3]; 3];
+            let mut wide = [[LaneBlock::ZERO; 3]; 3];
             for (wide, column) in wide.iter_mut().zip(columns) {
                 column.store(wide, 0);
             }
             wide
         };
         let (measured, predicted) = (apart(measured), apart(predicted));
-        let mut out = [Wide::ZERO; 4];
+        let mut out = [LaneBlock::ZERO; 4];
         for lane in 0..S::F64_LANES {
             let matrix =
-                |columns: &[[Wide; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row].0[lane]);
+                |columns: &[[LaneBlock; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row].0[lane]);
             let r = rotation::log(&(matrix(&measured) * matrix(&predicted).transpose()));
             for (wide, value) in out.iter_mut().zip([r.x, r.y, r.z, series::cotc(r.norm_squared())]) {
                 wide.0[lane] = value;
             }
         }
         let [x, y, z, k] = out;
-        Turn { r: Vectors::load(simd, &[x, y, z], 0), k: Lanes::load(simd, &k, 0) }
+        ResidualRotations { r: Vectors::load(simd, &[x, y, z], 0), k: Lanes::load(simd, &k, 0) }
     }
 
     /// `J_r(r)⁻¹ w`.
@@ -77,8 +77,8 @@ impl<S: Simd> Turn<S> {
         let q = k.times_plus(self.k.all(-2.0), (k * k).times_plus(length_squared, self.k.all(0.25)));
         let (root, length) = (q.sqrt(), length_squared.sqrt());
         let aside = b.times_plus(b, c * c).sqrt();
-        let unit_b = b.over(aside, 1.0);
-        let unit_c = c.over(aside, 0.0);
+        let unit_b = b.divide_or(aside, 1.0);
+        let unit_c = c.divide_or(aside, 0.0);
         let along = root * length;
         let across = -(root * a);
         [

@@ -11,11 +11,11 @@ pub const WIDTH: usize = 8;
 /// One number of [`WIDTH`] rows, on a cache line of its own.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct Wide(pub [f64; WIDTH]);
+pub struct LaneBlock(pub [f64; WIDTH]);
 
-impl Wide {
+impl LaneBlock {
     /// Zeros.
-    pub const ZERO: Wide = Wide([0.0; WIDTH]);
+    pub const ZERO: LaneBlock = LaneBlock([0.0; WIDTH]);
 }
 
 /// One number of each of as many rows as a vector of the machine has lanes, a divisor of [`WIDTH`].
@@ -35,7 +35,10 @@ pub(crate) fn parts<S: Simd>(_simd: S) -> std::ops::Range<usize> {
 /// Numbers by their index. `std::array::from_fn` calls a function that is not compiled for the vector instructions, unless the optimiser
 /// inlines it.
 #[inline(always)]
-pub(crate) fn each<S: Simd, const N: usize>(simd: S, make: impl Fn(usize) -> Lanes<S>) -> [Lanes<S>; N] {
+pub(crate) fn from_index<S: Simd, const N: usize>(
+    simd: S,
+    make: impl Fn(usize) -> Lanes<S>,
+) -> [Lanes<S>; N] {
     let mut all = [Lanes::splat(simd, 0.0); N];
     let mut k = 0;
     while k < N {
@@ -53,12 +56,12 @@ impl<S: Simd> Lanes<S> {
 
     /// Part `part` of the rows of a wide number.
     #[inline(always)]
-    pub(crate) fn load(simd: S, wide: &Wide, part: usize) -> Self {
+    pub(crate) fn load(simd: S, wide: &LaneBlock, part: usize) -> Self {
         Lanes { simd, numbers: S::as_simd_f64s(&wide.0).0[part] }
     }
 
     #[inline(always)]
-    pub(crate) fn store(self, wide: &mut Wide, part: usize) {
+    pub(crate) fn store(self, wide: &mut LaneBlock, part: usize) {
         S::as_mut_simd_f64s(&mut wide.0).0[part] = self.numbers;
     }
 
@@ -96,7 +99,7 @@ impl<S: Simd> Lanes<S> {
 
     /// `self / other`, or `otherwise` if `other` is not positive.
     #[inline(always)]
-    pub(crate) fn over(self, other: Self, otherwise: f64) -> Self {
+    pub(crate) fn divide_or(self, other: Self, otherwise: f64) -> Self {
         let positive = self.simd.greater_than_f64s(other.numbers, self.all(0.0).numbers);
         let quotient = self.simd.div_f64s(self.numbers, other.numbers);
         Lanes { numbers: self.simd.select_f64s(positive, quotient, self.all(otherwise).numbers), ..self }
@@ -120,7 +123,7 @@ impl<S: Simd> Lanes<S> {
 
     /// Adds these to part `part` of a wide number.
     #[inline(always)]
-    pub(crate) fn add_to(self, sum: &mut Wide, part: usize) {
+    pub(crate) fn add_to(self, sum: &mut LaneBlock, part: usize) {
         (Self::load(self.simd, sum, part) + self).store(sum, part);
     }
 
@@ -185,12 +188,12 @@ impl<S: Simd> Vectors<S> {
 
     /// Part `part` of three wide numbers.
     #[inline(always)]
-    pub(crate) fn load(simd: S, [x, y, z]: &[Wide; 3], part: usize) -> Self {
+    pub(crate) fn load(simd: S, [x, y, z]: &[LaneBlock; 3], part: usize) -> Self {
         Vectors([Lanes::load(simd, x, part), Lanes::load(simd, y, part), Lanes::load(simd, z, part)])
     }
 
     #[inline(always)]
-    pub(crate) fn store(self, wide: &mut [Wide; 3], part: usize) {
+    pub(crate) fn store(self, wide: &mut [LaneBlock; 3], part: usize) {
         self.0[0].store(&mut wide[0], part);
         self.0[1].store(&mut wide[1], part);
         self.0[2].store(&mut wide[2], part);

@@ -3,8 +3,8 @@
 
 use super::normal::{ROUNDING, quadratic};
 use super::reuse::Reuse;
-use super::scaling::Scaled;
-use super::{LeastSquares, Normal, Options, Scaling, Summary, Termination, refine};
+use super::scaling::ScaledProblem;
+use super::{LeastSquares, NormalEquations, Options, Scaling, Summary, Termination, refine};
 pub(crate) use crate::linalg::dot;
 use crate::linalg::{self, Factor};
 
@@ -29,20 +29,20 @@ pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: P::State,
     options: &Options,
-) -> (P::State, Normal, Summary) {
-    let mut search = Search::new(problem, start, *options);
+) -> (P::State, NormalEquations, Summary) {
+    let mut search = LevenbergMarquardtSearch::new(problem, start, *options);
     let termination = search.run();
     search.problem.restore(&mut search.normal);
     let summary = Summary { iterations: search.iterations, termination, trace: search.trace };
     (search.state, search.normal, summary)
 }
 
-struct Search<'a, P: LeastSquares> {
-    problem: Scaled<'a, P>,
+struct LevenbergMarquardtSearch<'a, P: LeastSquares> {
+    problem: ScaledProblem<'a, P>,
     options: Options,
     state: P::State,
     /// Normal information of this state; with the `JᵀJ` of an earlier one while that is frozen.
-    normal: Normal,
+    normal: NormalEquations,
     /// State of the policy that freezes `JᵀJ`.
     reuse: Reuse,
     /// Upper triangle of the matrix that steps are solved with: `JᵀJ`, or the full Hessian if that is known and convex.
@@ -59,16 +59,16 @@ struct Search<'a, P: LeastSquares> {
     trace: Vec<f64>,
 }
 
-impl<'a, P: LeastSquares> Search<'a, P> {
+impl<'a, P: LeastSquares> LevenbergMarquardtSearch<'a, P> {
     fn new(problem: &'a P, state: P::State, options: Options) -> Self {
-        let mut problem = Scaled::new(problem, options.scaling);
+        let mut problem = ScaledProblem::new(problem, options.scaling);
         let mut normal = problem.nearly_normal(&state);
         problem.adapt(&mut normal);
         let damping = match options.scaling {
             Scaling::Given => 1.0 / (options.trust * options.trust),
             Scaling::Columns { damping } => damping / normal.mean_square(),
         };
-        Search {
+        LevenbergMarquardtSearch {
             problem,
             options,
             state,
@@ -98,7 +98,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
                 return termination;
             }
             if !trial.as_ref().is_some_and(|trial| self.rules_out_convergence(trial))
-                && let Some(termination) = self.converged()
+                && let Some(termination) = self.check_convergence()
             {
                 return termination;
             }
@@ -137,7 +137,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     /// Replaces a frozen `JᵀJ` by that of the state.
     fn rebuild_normal(&mut self) {
-        self.reuse.rebuilt();
+        self.reuse.note_rebuilt();
         self.normal = self.problem.nearly_normal(&self.state);
         self.problem.adapt(&mut self.normal);
         self.rebuild_hessian();
@@ -152,7 +152,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     /// Step of the damped normal equations; with a frozen `JᵀJ`, which is close to the optimum, damped by rounding alone. `None` if
     /// they are not positive definite.
-    fn damped_step(&mut self) -> Option<Trial> {
+    fn damped_step(&mut self) -> Option<TrialStep> {
         let floor = ROUNDING * self.scale();
         let damping = if self.reuse.is_frozen() {
             floor
@@ -165,7 +165,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let (_, factor) = self.factor.as_ref()?;
         let velocity = linalg::cholesky_solve(factor, &self.normal.gradient);
-        let kept = self.kept(&velocity);
+        let kept = self.kept_step(&velocity);
         let is_cut = kept != velocity;
         let damped = damping * dot(&velocity, &velocity);
         let predicted = if is_cut {
@@ -173,12 +173,12 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         } else {
             predicted_reduction(1.0, dot(&velocity, &self.normal.gradient), damped)
         };
-        Some(Trial { step: velocity, predicted, shortened: false, damping, is_cut })
+        Some(TrialStep { step: velocity, predicted, shortened: false, damping, is_cut })
     }
 
     /// Damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature. Here t is below one
     /// if the acceleration `a` would overtake `v`. `None` if less than the shortest part remains.
-    fn geodesic_step(&self, trial: Trial) -> Option<Trial> {
+    fn geodesic_step(&self, trial: TrialStep) -> Option<TrialStep> {
         if !(self.options.acceleration && self.nonlinear) || trial.is_cut {
             return Some(trial);
         }
@@ -193,11 +193,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
         let descent = dot(velocity, &self.normal.gradient);
         let predicted = predicted_reduction(t, descent, trial.damping * dot(velocity, velocity));
-        Some(Trial { step, predicted, shortened: t < 1.0, ..trial })
+        Some(TrialStep { step, predicted, shortened: t < 1.0, ..trial })
     }
 
     /// Part of a step that the retraction keeps, to first order.
-    fn kept(&self, step: &[f64]) -> Vec<f64> {
+    fn kept_step(&self, step: &[f64]) -> Vec<f64> {
         let mut kept = step.to_vec();
         self.problem.project_constraints(&mut kept);
         kept
@@ -206,7 +206,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     // Judgement of the step.
 
     /// Tries one step; `false` if steps have become too small to matter without success.
-    fn try_step(&mut self, trial: Option<Trial>) -> bool {
+    fn try_step(&mut self, trial: Option<TrialStep>) -> bool {
         self.iterations += 1;
         let Some(trial) = trial else {
             self.trace.push(self.normal.mean_square());
@@ -230,7 +230,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         if normal.cost.is_finite() && gain > ACCEPTED {
             // With a frozen `JᵀJ` the model is not the problem's own, and its gain ratio has no information on the problem's curvature.
             self.nonlinear |= !self.reuse.is_frozen() && !STRAIGHT.contains(&gain);
-            self.reuse.accepted(trial.predicted, is_frozen);
+            self.reuse.note_accepted(trial.predicted, is_frozen);
             self.accept(state, normal, if trial.shortened { gain.min(0.5) } else { gain });
             return true;
         }
@@ -252,7 +252,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// Residuals and gradient at the end of a step, for the `JᵀJ` of its start; `None` if the end needs its own.
-    fn evaluate_without_jtj(&self, state: &P::State, predicted: f64) -> Option<Normal> {
+    fn evaluate_without_jtj(&self, state: &P::State, predicted: f64) -> Option<NormalEquations> {
         let cost = self.normal.cost;
         if self.nonlinear || !self.reuse.may_freeze(predicted, cost, || self.is_well_conditioned()) {
             return None;
@@ -261,7 +261,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// Accepts the step, and lowers the damping more for a better prediction of the reduction (nielsen1999).
-    fn accept(&mut self, state: P::State, mut normal: Normal, gain: f64) {
+    fn accept(&mut self, state: P::State, mut normal: NormalEquations, gain: f64) {
         self.damping *= if gain <= 0.5 {
             (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
         } else if self.nonlinear {
@@ -316,7 +316,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     /// True if a damped step already proves that the stopping rule does not hold for the undamped one. That one is longer and has
     /// the larger predicted reduction.
-    fn rules_out_convergence(&self, trial: &Trial) -> bool {
+    fn rules_out_convergence(&self, trial: &TrialStep) -> bool {
         !trial.is_cut
             && trial.damping >= ROUNDING * self.scale()
             && 0.5 * dot(&trial.step, &self.normal.gradient)
@@ -326,7 +326,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// Applies the stopping rule to the undamped step (damped by rounding alone).
-    fn converged(&self) -> Option<Termination> {
+    fn check_convergence(&self) -> Option<Termination> {
         let n = self.problem.dim();
         let floor = ROUNDING * self.scale();
         if n == 0 || floor == 0.0 {
@@ -334,7 +334,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let factor = linalg::cholesky(&self.hessian, n, floor)?;
         let step = linalg::cholesky_solve(&factor, &self.normal.gradient);
-        let kept = self.kept(&step);
+        let kept = self.kept_step(&step);
         let (predicted, step) = if kept == step {
             (0.5 * dot(&step, &self.normal.gradient), step)
         } else {
@@ -344,7 +344,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// Applies the stopping rule to a step with a frozen `JᵀJ`, which is undamped; takes it without an evaluation if it is the final one.
-    fn end_with_frozen_jtj(&mut self, trial: &Trial) -> Option<Termination> {
+    fn end_with_frozen_jtj(&mut self, trial: &TrialStep) -> Option<Termination> {
         if !self.reuse.is_frozen() || trial.is_cut {
             return None;
         }
@@ -365,7 +365,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 }
 
 /// A step to try.
-struct Trial {
+struct TrialStep {
     step: Vec<f64>,
     /// Predicted reduction: the decrease of the cost by the quadratic model.
     predicted: f64,

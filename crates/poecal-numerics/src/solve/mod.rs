@@ -15,7 +15,7 @@ mod termination;
 mod warm_start;
 
 pub use levenberg_marquardt::minimize;
-pub use normal::Normal;
+pub use normal::NormalEquations;
 pub use options::{Options, Scaling, Summary};
 pub use termination::Termination;
 pub use warm_start::{WarmStart, minimize_warm};
@@ -27,20 +27,20 @@ pub use warm_start::{WarmStart, minimize_warm};
 /// # mod poecal {
 /// #     pub use poecal_numerics::solve;
 /// # }
-/// use poecal::solve::{LeastSquares, Normal, Options, minimize};
+/// use poecal::solve::{LeastSquares, NormalEquations, Options, minimize};
 ///
 /// /// `y = a exp(b x)`, two unknowns.
-/// struct Growth([(f64, f64); 4]);
+/// struct BoardGrowth([(f64, f64); 4]);
 ///
-/// impl LeastSquares for Growth {
+/// impl LeastSquares for BoardGrowth {
 ///     type State = [f64; 2];
 ///
 ///     fn dim(&self) -> usize {
 ///         2
 ///     }
 ///
-///     fn normal(&self, &[a, b]: &Self::State) -> Normal {
-///         let mut normal = Normal::new(2);
+///     fn normal(&self, &[a, b]: &Self::State) -> NormalEquations {
+///         let mut normal = NormalEquations::new(2);
 ///         for (x, y) in self.0 {
 ///             let grown = (b * x).exp();
 ///             // The Jacobian of the prediction, and what was measured less the prediction.
@@ -55,7 +55,7 @@ pub use warm_start::{WarmStart, minimize_warm};
 /// }
 ///
 /// let seen = [0.0, 1.0, 2.0, 3.0].map(|x: f64| (x, 2.0 * (0.3 * x).exp()));
-/// let ([a, b], _, summary) = minimize(&Growth(seen), [1.0, 0.0], &Options::default());
+/// let ([a, b], _, summary) = minimize(&BoardGrowth(seen), [1.0, 0.0], &Options::default());
 /// assert!(summary.termination.is_success() && (a - 2.0).abs() < 1e-6 && (b - 0.3).abs() < 1e-6);
 /// ```
 pub trait LeastSquares {
@@ -66,15 +66,15 @@ pub trait LeastSquares {
     fn dim(&self) -> usize;
 
     /// Residuals and their derivatives, as normal information.
-    fn normal(&self, state: &Self::State) -> Normal;
+    fn normal(&self, state: &Self::State) -> NormalEquations;
 
     /// The same information with a `JᵀJ` that may differ by a share that is quadratic in the residuals, if that saves time: for steps.
-    fn nearly_normal(&self, state: &Self::State) -> Normal {
+    fn nearly_normal(&self, state: &Self::State) -> NormalEquations {
         self.normal(state)
     }
 
     /// The same information without `JᵀJ`, which is left empty: for steps with an older one. `None` if that would save nothing.
-    fn gradient(&self, _state: &Self::State) -> Option<Normal> {
+    fn gradient(&self, _state: &Self::State) -> Option<NormalEquations> {
         None
     }
 
@@ -117,16 +117,16 @@ mod tests {
             N
         }
 
-        fn normal(&self, x: &[f64; N]) -> Normal {
-            let mut normal = Normal::new(N);
+        fn normal(&self, x: &[f64; N]) -> NormalEquations {
+            let mut normal = NormalEquations::new(N);
             for (f, gradient) in (self.0)(x) {
                 normal.add_rows(&gradient, &[-f], 0);
             }
             normal
         }
 
-        fn gradient(&self, x: &[f64; N]) -> Option<Normal> {
-            Some(Normal { gram: Vec::new(), ..self.normal(x) })
+        fn gradient(&self, x: &[f64; N]) -> Option<NormalEquations> {
+            Some(NormalEquations { gram: Vec::new(), ..self.normal(x) })
         }
 
         fn retract(&self, x: &[f64; N], step: &[f64]) -> [f64; N] {

@@ -9,12 +9,12 @@ pub(crate) const ROUNDING: f64 = 1e-13;
 /// and (28).
 ///
 /// ```
-/// let mut normal = poecal_numerics::solve::Normal::new(2);
+/// let mut normal = poecal_numerics::solve::NormalEquations::new(2);
 /// normal.add_rows(&[1.0, 0.0, 0.0, 2.0], &[3.0, 4.0], 0);
 /// assert_eq!((normal.cost, normal.gradient[1], normal.gram[3]), (12.5, 8.0, 4.0));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Normal {
+pub struct NormalEquations {
     /// Upper triangle of `JᵀJ`, row-major `n × n`.
     pub gram: Vec<f64>,
     /// `Jᵀe`, with J the derivative of the *prediction*: the direction of descent.
@@ -25,11 +25,11 @@ pub struct Normal {
     pub residuals: usize,
 }
 
-impl Normal {
+impl NormalEquations {
     /// Information without residuals on `n` unknowns.
     #[must_use]
     pub fn new(n: usize) -> Self {
-        Normal { gram: vec![0.0; n * n], gradient: vec![0.0; n], cost: 0.0, residuals: 0 }
+        NormalEquations { gram: vec![0.0; n * n], gradient: vec![0.0; n], cost: 0.0, residuals: 0 }
     }
 
     /// Number of unknowns.
@@ -48,7 +48,7 @@ impl Normal {
     }
 
     /// Adds the information of other residuals.
-    pub fn add(&mut self, other: &Normal) {
+    pub fn add(&mut self, other: &NormalEquations) {
         for (a, b) in self.gram.iter_mut().zip(&other.gram) {
             *a += b;
         }

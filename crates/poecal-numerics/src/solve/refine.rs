@@ -1,7 +1,7 @@
 //! The last digits: steps that are judged by the gradient, since rounding of the cost hides their reductions (theory.md §6, *The last
 //! digits*; hager2005).
 
-use super::{LeastSquares, Normal};
+use super::{LeastSquares, NormalEquations};
 use crate::linalg;
 
 /// Largest increase of the cost that may be rounding, as a share of it.
@@ -15,13 +15,13 @@ const LARGEST_RATIO: f64 = 0.7;
 pub(crate) fn refine<P: LeastSquares>(
     problem: &P,
     state: &mut P::State,
-    normal: &mut Normal,
+    normal: &mut NormalEquations,
     hessian: &[f64],
     floor: f64,
     most: usize,
 ) -> usize {
     let Some(factor) = linalg::cholesky(hessian, problem.dim(), floor) else { return 0 };
-    let undamped = |normal: &Normal| {
+    let undamped = |normal: &NormalEquations| {
         let step = linalg::cholesky_solve(&factor, &normal.gradient);
         let predicted = 0.5 * linalg::dot(&step, &normal.gradient);
         (step, predicted)

@@ -90,13 +90,13 @@ impl Reuse {
     }
 
     /// Records an accepted step; its end was evaluated without `JᵀJ` if `is_frozen`.
-    pub(crate) fn accepted(&mut self, predicted: f64, is_frozen: bool) {
+    pub(crate) fn note_accepted(&mut self, predicted: f64, is_frozen: bool) {
         self.last_reduction = predicted;
         self.is_frozen = is_frozen;
     }
 
     /// Records a `JᵀJ` that was built for the current state.
-    pub(crate) fn rebuilt(&mut self) {
+    pub(crate) fn note_rebuilt(&mut self) {
         self.is_frozen = false;
     }
 }
@@ -110,21 +110,21 @@ mod tests {
         let mut reuse = Reuse::new(true);
         assert!(!reuse.may_freeze(0.9, 1.0, || true), "the first long step");
         assert!(reuse.may_freeze(0.01, 1.0, || false), "a short step");
-        reuse.accepted(0.01, true);
+        reuse.note_accepted(0.01, true);
         assert!(reuse.is_frozen());
         assert!(!reuse.must_rebuild(Some(1e-3), 1.0));
         assert!(reuse.must_rebuild(Some(0.5), 1.0) && reuse.must_rebuild(None, 1.0));
-        reuse.rebuilt();
+        reuse.note_rebuilt();
         assert!(!reuse.is_frozen() && !reuse.must_rebuild(Some(0.5), 1.0));
     }
 
     #[test]
     fn fast_convergence_freezes_only_where_jtj_is_well_conditioned() {
         let mut reuse = Reuse::new(true);
-        reuse.accepted(100.0, false);
+        reuse.note_accepted(100.0, false);
         assert!(reuse.may_freeze(0.5, 1.0, || true));
         assert!(!reuse.may_freeze(0.5, 1.0, || false));
-        reuse.accepted(0.5, true);
+        reuse.note_accepted(0.5, true);
         assert!(reuse.may_freeze(1e-3, 1.0, || false), "frozen before");
         assert!(!reuse.may_freeze(1e-2, 1.0, || true), "slow");
     }
@@ -132,11 +132,11 @@ mod tests {
     #[test]
     fn a_step_is_final_if_the_one_after_would_be_far_below_the_threshold() {
         let mut reuse = Reuse::new(true);
-        reuse.accepted(1.0, true);
+        reuse.note_accepted(1.0, true);
         // The predicted reduction of the step after is 1e-3 · 1e-3.
         assert!(reuse.is_final_step(1e-3, 1.1e-4));
         assert!(!reuse.is_final_step(1e-3, 0.9e-4));
-        reuse.rebuilt();
+        reuse.note_rebuilt();
         assert!(!reuse.is_final_step(1e-3, 1.0), "not frozen");
     }
 

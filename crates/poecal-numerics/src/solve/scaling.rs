@@ -1,6 +1,6 @@
 //! Unknowns of any units, measured by their columns of the Jacobian (more1978).
 
-use super::{LeastSquares, Normal, Scaling};
+use super::{LeastSquares, NormalEquations, Scaling};
 
 /// Smallest ratio of a column's reference norm to the one before. References that follow at once let a step go far along an unknown
 /// whose column vanishes. References that never fall (more1978) hold back permanently an unknown whose column was large at a far
@@ -10,32 +10,32 @@ const SLOWEST: f64 = 0.7;
 /// A problem as input of the search: with its original unknowns, or with each divided by its unit.
 ///
 /// Units are powers of two, so that scaling rounds nothing.
-pub(crate) struct Scaled<'a, P> {
+pub(crate) struct ScaledProblem<'a, P> {
     problem: &'a P,
     /// Unit of each unknown; empty if unknowns stay unscaled.
-    units: Vec<Scale>,
+    units: Vec<ColumnScale>,
 }
 
 #[derive(Clone, Copy)]
-struct Scale {
+struct ColumnScale {
     /// Reference norm of the column of the unscaled unknown; zero as long as the column was.
     norm: f64,
     /// The unit, in that of the unscaled unknown.
     size: f64,
 }
 
-impl<'a, P: LeastSquares> Scaled<'a, P> {
+impl<'a, P: LeastSquares> ScaledProblem<'a, P> {
     pub(crate) fn new(problem: &'a P, scaling: Scaling) -> Self {
         let count = match scaling {
             Scaling::Given => 0,
             Scaling::Columns { .. } => problem.dim(),
         };
-        Scaled { problem, units: vec![Scale { norm: 0.0, size: 1.0 }; count] }
+        ScaledProblem { problem, units: vec![ColumnScale { norm: 0.0, size: 1.0 }; count] }
     }
 
     /// Chooses new units at a state with this normal information, which is in the units so far and is changed to the new ones. In these
     /// each column's norm is about 1, or less if it has fallen faster than its reference.
-    pub(crate) fn adapt(&mut self, normal: &mut Normal) {
+    pub(crate) fn adapt(&mut self, normal: &mut NormalEquations) {
         let n = self.units.len();
         let mut ratios = vec![1.0; n];
         for (k, (unit, ratio)) in self.units.iter_mut().zip(&mut ratios).enumerate() {
@@ -43,32 +43,32 @@ impl<'a, P: LeastSquares> Scaled<'a, P> {
             let size = (-norm.log2().round()).exp2();
             if norm > 0.0 && size.is_normal() {
                 *ratio = size / unit.size;
-                *unit = Scale { norm, size };
+                *unit = ColumnScale { norm, size };
             }
         }
         scale(normal, &ratios);
     }
 
     /// Normal information of the unscaled unknowns.
-    pub(crate) fn restore(&self, normal: &mut Normal) {
+    pub(crate) fn restore(&self, normal: &mut NormalEquations) {
         let ratios: Vec<f64> = self.units.iter().map(|unit| 1.0 / unit.size).collect();
         scale(normal, &ratios);
     }
 
-    fn scaled(&self, mut normal: Normal) -> Normal {
+    fn scale_normal(&self, mut normal: NormalEquations) -> NormalEquations {
         let ratios: Vec<f64> = self.units.iter().map(|unit| unit.size).collect();
         scale(&mut normal, &ratios);
         normal
     }
 
     /// A step in unscaled unknowns.
-    fn given(&self, step: &[f64]) -> Vec<f64> {
+    fn unscale_step(&self, step: &[f64]) -> Vec<f64> {
         step.iter().zip(&self.units).map(|(part, unit)| part * unit.size).collect()
     }
 }
 
 /// Multiplies each column of the Jacobian; without ratios, none.
-fn scale(normal: &mut Normal, ratios: &[f64]) {
+fn scale(normal: &mut NormalEquations, ratios: &[f64]) {
     for (g, ratio) in normal.gradient.iter_mut().zip(ratios) {
         *g *= ratio;
     }
@@ -83,30 +83,30 @@ fn scale_gram(gram: &mut [f64], ratios: &[f64]) {
     }
 }
 
-impl<P: LeastSquares> LeastSquares for Scaled<'_, P> {
+impl<P: LeastSquares> LeastSquares for ScaledProblem<'_, P> {
     type State = P::State;
 
     fn dim(&self) -> usize {
         self.problem.dim()
     }
 
-    fn normal(&self, state: &P::State) -> Normal {
-        self.scaled(self.problem.normal(state))
+    fn normal(&self, state: &P::State) -> NormalEquations {
+        self.scale_normal(self.problem.normal(state))
     }
 
-    fn nearly_normal(&self, state: &P::State) -> Normal {
-        self.scaled(self.problem.nearly_normal(state))
+    fn nearly_normal(&self, state: &P::State) -> NormalEquations {
+        self.scale_normal(self.problem.nearly_normal(state))
     }
 
-    fn gradient(&self, state: &P::State) -> Option<Normal> {
-        self.problem.gradient(state).map(|normal| self.scaled(normal))
+    fn gradient(&self, state: &P::State) -> Option<NormalEquations> {
+        self.problem.gradient(state).map(|normal| self.scale_normal(normal))
     }
 
     fn second_order(&self, state: &P::State, step: &[f64]) -> Vec<f64> {
         if self.units.is_empty() {
             return self.problem.second_order(state, step);
         }
-        self.given(&self.problem.second_order(state, &self.given(step)))
+        self.unscale_step(&self.problem.second_order(state, &self.unscale_step(step)))
     }
 
     fn curvature(&self, state: &P::State) -> Option<Vec<f64>> {
@@ -134,7 +134,7 @@ impl<P: LeastSquares> LeastSquares for Scaled<'_, P> {
         if self.units.is_empty() {
             return self.problem.retract(state, step);
         }
-        self.problem.retract(state, &self.given(step))
+        self.problem.retract(state, &self.unscale_step(step))
     }
 }
 
@@ -152,8 +152,8 @@ mod tests {
             2
         }
 
-        fn normal(&self, [x, y]: &[f64; 2]) -> Normal {
-            let mut normal = Normal::new(2);
+        fn normal(&self, [x, y]: &[f64; 2]) -> NormalEquations {
+            let mut normal = NormalEquations::new(2);
             normal.add_rows(&[1e5, 0.0, 0.0, 1e-7], &[3.0 - 1e5 * x, 2.0 - 1e-7 * y], 0);
             normal
         }
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn columns_come_to_about_one_and_back_to_the_same_bits() {
-        let mut scaled = Scaled::new(&Apart, Scaling::Columns { damping: 1e-3 });
+        let mut scaled = ScaledProblem::new(&Apart, Scaling::Columns { damping: 1e-3 });
         let mut normal = scaled.nearly_normal(&[0.0, 0.0]);
         scaled.adapt(&mut normal);
         assert!([0, 3].iter().all(|&k| (0.5..=2.0).contains(&normal.gram[k])), "{:?}", normal.gram);
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn unknowns_as_they_are_given_are_left_alone() {
-        let mut scaled = Scaled::new(&Apart, Scaling::Given);
+        let mut scaled = ScaledProblem::new(&Apart, Scaling::Given);
         let mut normal = scaled.nearly_normal(&[0.0, 0.0]);
         scaled.adapt(&mut normal);
         assert_eq!(normal, Apart.normal(&[0.0, 0.0]));

@@ -3,7 +3,7 @@
 use super::levenberg_marquardt::minimize;
 use super::normal::ROUNDING;
 use super::reuse::{converges_fast, is_final_step};
-use super::{LeastSquares, Normal, Options, Summary, Termination};
+use super::{LeastSquares, NormalEquations, Options, Summary, Termination};
 use crate::linalg::{self, Factor};
 
 /// A state with its normal information and the factor of its `JᵀJ`.
@@ -12,8 +12,8 @@ use crate::linalg::{self, Factor};
 /// # mod poecal {
 /// #     pub use poecal_numerics::solve;
 /// # }
-/// use poecal::solve::{Normal, WarmStart};
-/// let mut normal = Normal::new(1);
+/// use poecal::solve::{NormalEquations, WarmStart};
+/// let mut normal = NormalEquations::new(1);
 /// normal.add_rows(&[2.0], &[0.1], 0);
 /// let start = WarmStart::new("a state", normal);
 /// assert_eq!(start.state(), &"a state");
@@ -21,7 +21,7 @@ use crate::linalg::{self, Factor};
 #[derive(Clone, Debug)]
 pub struct WarmStart<S> {
     state: S,
-    normal: Normal,
+    normal: NormalEquations,
     /// Factor; `None` if `JᵀJ` is singular.
     factor: Option<Factor>,
 }
@@ -29,7 +29,7 @@ pub struct WarmStart<S> {
 impl<S> WarmStart<S> {
     /// Factorises the `JᵀJ` of a state.
     #[must_use]
-    pub fn new(state: S, normal: Normal) -> Self {
+    pub fn new(state: S, normal: NormalEquations) -> Self {
         let n = normal.dim();
         let scale = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&normal.gram, n, ROUNDING * scale);
@@ -50,7 +50,7 @@ pub fn minimize_warm<P: LeastSquares>(
     problem: &P,
     start: &WarmStart<P::State>,
     options: &Options,
-) -> (P::State, Normal, Summary) {
+) -> (P::State, NormalEquations, Summary) {
     let mut state = start.state.clone();
     let Some(factor) = start.factor.as_ref().filter(|_| options.reuse) else {
         return minimize(problem, state, options);

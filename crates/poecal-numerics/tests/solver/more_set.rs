@@ -29,7 +29,7 @@ fn problem(
     Problem { name, function, start: start.into(), minima }
 }
 
-fn fixed() -> Vec<Problem> {
+fn fixed_problems() -> Vec<Problem> {
     vec![
         problem("1 Rosenbrock", rosenbrock, [-1.2, 1.0], &[0.0]),
         // The local minimum is in the paper.
@@ -101,7 +101,7 @@ fn variable() -> Vec<Problem> {
 }
 
 pub(crate) fn all() -> impl Iterator<Item = Problem> {
-    fixed().into_iter().chain(variable())
+    fixed_problems().into_iter().chain(variable())
 }
 
 /// True if a sum of squares is a minimum as printed; and the number of digits that agree.

@@ -5,7 +5,7 @@
 use crate::plain::Evaluation;
 
 /// Residuals and the dense Jacobian of `m` rows, filled in by `fill`.
-fn dense(m: usize, n: usize, fill: impl FnOnce(&mut [f64], &mut [Vec<f64>])) -> Evaluation {
+fn fill_dense(m: usize, n: usize, fill: impl FnOnce(&mut [f64], &mut [Vec<f64>])) -> Evaluation {
     let (mut f, mut rows) = (vec![0.0; m], vec![vec![0.0; n]; m]);
     fill(&mut f, &mut rows);
     (f, rows.concat())
@@ -19,7 +19,7 @@ fn number(index: usize) -> f64 {
 /// 20
 pub(crate) fn watson(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(31, n, |f, rows| {
+    fill_dense(31, n, |f, rows| {
         for i in 0..29 {
             let t = number(i) / 29.0;
             let sum: f64 = (0..n).map(|j| x[j] * t.powi(j as i32)).sum();
@@ -40,7 +40,7 @@ pub(crate) fn watson(x: &[f64]) -> Evaluation {
 /// 21
 pub(crate) fn extended_rosenbrock(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for k in (0..n).step_by(2) {
             f[k] = 10.0 * (x[k + 1] - x[k] * x[k]);
             (rows[k][k], rows[k][k + 1]) = (-20.0 * x[k], 10.0);
@@ -53,7 +53,7 @@ pub(crate) fn extended_rosenbrock(x: &[f64]) -> Evaluation {
 /// 22
 pub(crate) fn extended_powell(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for k in (0..n).step_by(4) {
             let (part, jacobian) = crate::more_problems::powell_singular(&x[k..k + 4]);
             f[k..k + 4].copy_from_slice(&part);
@@ -67,7 +67,7 @@ pub(crate) fn extended_powell(x: &[f64]) -> Evaluation {
 /// 23
 pub(crate) fn penalty_1(x: &[f64]) -> Evaluation {
     let (n, root) = (x.len(), 1e-5_f64.sqrt());
-    dense(n + 1, n, |f, rows| {
+    fill_dense(n + 1, n, |f, rows| {
         for k in 0..n {
             f[k] = root * (x[k] - 1.0);
             rows[k][k] = root;
@@ -81,7 +81,7 @@ pub(crate) fn penalty_1(x: &[f64]) -> Evaluation {
 pub(crate) fn penalty_2(x: &[f64]) -> Evaluation {
     let (n, root) = (x.len(), 1e-5_f64.sqrt());
     let e = |value: f64| (value / 10.0).exp();
-    dense(2 * n, n, |f, rows| {
+    fill_dense(2 * n, n, |f, rows| {
         f[0] = x[0] - 0.2;
         rows[0][0] = 1.0;
         for k in 1..n {
@@ -102,7 +102,7 @@ pub(crate) fn penalty_2(x: &[f64]) -> Evaluation {
 /// 25
 pub(crate) fn variably_dimensioned(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n + 2, n, |f, rows| {
+    fill_dense(n + 2, n, |f, rows| {
         let sum: f64 = (0..n).map(|k| number(k) * (x[k] - 1.0)).sum();
         for k in 0..n {
             f[k] = x[k] - 1.0;
@@ -116,7 +116,7 @@ pub(crate) fn variably_dimensioned(x: &[f64]) -> Evaluation {
 /// 26
 pub(crate) fn trigonometric(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         let sum: f64 = x.iter().map(|x| x.cos()).sum();
         for i in 0..n {
             f[i] = n as f64 - sum + number(i) * (1.0 - x[i].cos()) - x[i].sin();
@@ -131,7 +131,7 @@ pub(crate) fn trigonometric(x: &[f64]) -> Evaluation {
 /// 27
 pub(crate) fn brown_almost_linear(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         let sum: f64 = x.iter().sum();
         for i in 0..n - 1 {
             f[i] = x[i] + sum - number(n);
@@ -149,7 +149,7 @@ pub(crate) fn brown_almost_linear(x: &[f64]) -> Evaluation {
 pub(crate) fn discrete_boundary_value(x: &[f64]) -> Evaluation {
     let n = x.len();
     let h = 1.0 / number(n);
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for i in 0..n {
             let base = x[i] + number(i) * h + 1.0;
             f[i] = 2.0 * x[i] + h * h * base.powi(3) / 2.0;
@@ -171,7 +171,7 @@ pub(crate) fn discrete_integral_equation(x: &[f64]) -> Evaluation {
     let n = x.len();
     let h = 1.0 / number(n);
     let t = |j: usize| number(j) * h;
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for i in 0..n {
             f[i] = x[i];
             rows[i][i] = 1.0;
@@ -188,7 +188,7 @@ pub(crate) fn discrete_integral_equation(x: &[f64]) -> Evaluation {
 /// 30
 pub(crate) fn broyden_tridiagonal(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for i in 0..n {
             f[i] = (3.0 - 2.0 * x[i]) * x[i] + 1.0;
             rows[i][i] = 3.0 - 4.0 * x[i];
@@ -207,7 +207,7 @@ pub(crate) fn broyden_tridiagonal(x: &[f64]) -> Evaluation {
 /// 31
 pub(crate) fn broyden_banded(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for i in 0..n {
             f[i] = x[i] * (2.0 + 5.0 * x[i] * x[i]) + 1.0;
             rows[i][i] = 2.0 + 15.0 * x[i] * x[i];
@@ -225,7 +225,7 @@ pub(crate) const LINEAR_ROWS: usize = 10;
 /// 32
 pub(crate) fn linear_full_rank(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(LINEAR_ROWS, n, |f, rows| {
+    fill_dense(LINEAR_ROWS, n, |f, rows| {
         let (share, sum) = (2.0 / LINEAR_ROWS as f64, x.iter().sum::<f64>());
         for i in 0..LINEAR_ROWS {
             f[i] = -share * sum - 1.0;
@@ -241,7 +241,7 @@ pub(crate) fn linear_full_rank(x: &[f64]) -> Evaluation {
 /// 33
 pub(crate) fn linear_rank_1(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(LINEAR_ROWS, n, |f, rows| {
+    fill_dense(LINEAR_ROWS, n, |f, rows| {
         let sum: f64 = (0..n).map(|j| number(j) * x[j]).sum();
         for i in 0..LINEAR_ROWS {
             f[i] = number(i) * sum - 1.0;
@@ -255,7 +255,7 @@ pub(crate) fn linear_rank_1(x: &[f64]) -> Evaluation {
 /// 34
 pub(crate) fn linear_rank_1_with_zeros(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(LINEAR_ROWS, n, |f, rows| {
+    fill_dense(LINEAR_ROWS, n, |f, rows| {
         let sum: f64 = (1..n - 1).map(|j| number(j) * x[j]).sum();
         f.fill(-1.0);
         for i in 1..LINEAR_ROWS - 1 {
@@ -270,7 +270,7 @@ pub(crate) fn linear_rank_1_with_zeros(x: &[f64]) -> Evaluation {
 /// 35, with as many residuals as unknowns
 pub(crate) fn chebyquad(x: &[f64]) -> Evaluation {
     let n = x.len();
-    dense(n, n, |f, rows| {
+    fill_dense(n, n, |f, rows| {
         for (j, &x) in x.iter().enumerate() {
             let y = 2.0 * x - 1.0;
             // Shifted Chebyshev polynomials and their derivatives by x, of this degree and of the one before.

@@ -1,6 +1,6 @@
 //! Plain problems `min Σ f(x)²` of numbers, by the solver's trait.
 
-use poecal_numerics::solve::{LeastSquares, Normal, Options, Scaling, Summary, minimize};
+use poecal_numerics::solve::{LeastSquares, NormalEquations, Options, Scaling, Summary, minimize};
 use std::cell::Cell;
 
 /// Residuals `f` and their Jacobian, row after row.
@@ -50,23 +50,23 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
     }
 
     /// Here `f` is the prediction, and zero was measured.
-    fn normal(&self, x: &Vec<f64>) -> Normal {
+    fn normal(&self, x: &Vec<f64>) -> NormalEquations {
         self.products.set(self.products.get() + 1);
         let (f, jacobian) = self.evaluate(x);
         let residuals: Vec<f64> = f.iter().map(|f| -f).collect();
-        let mut normal = Normal::new(self.dim);
+        let mut normal = NormalEquations::new(self.dim);
         normal.add_rows(&jacobian, &residuals, 0);
         normal
     }
 
-    fn gradient(&self, x: &Vec<f64>) -> Option<Normal> {
+    fn gradient(&self, x: &Vec<f64>) -> Option<NormalEquations> {
         let (f, jacobian) = self.evaluate(x);
         let mut gradient = vec![0.0; self.dim];
         for (f, row) in f.iter().zip(jacobian.chunks(self.dim)) {
             gradient.iter_mut().zip(row).for_each(|(g, r)| *g -= r * f);
         }
         let cost = 0.5 * f.iter().map(|f| f * f).sum::<f64>();
-        Some(Normal { gram: Vec::new(), gradient, cost, residuals: f.len() })
+        Some(NormalEquations { gram: Vec::new(), gradient, cost, residuals: f.len() })
     }
 
     /// Central difference over a tenth of the step.

@@ -2,21 +2,21 @@
 
 use crate::plain::{Evaluation, Plain, to_the_last_digits};
 use crate::{more_set, nist};
-use poecal_numerics::solve::{LeastSquares, Normal, Options, WarmStart, minimize, minimize_warm};
+use poecal_numerics::solve::{LeastSquares, NormalEquations, Options, WarmStart, minimize, minimize_warm};
 
 /// Both results are where rounding of the gradient hides the optimum: some 1e-11 of each unknown in these problems, of condition numbers
 /// up to 1e4.
 const SAME: f64 = 1e-8;
 
 /// Largest difference of two solutions, as a share of each unknown.
-fn apart(a: &[f64], b: &[f64]) -> f64 {
+fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs() / a.abs().max(1e-6)).fold(0.0, f64::max)
 }
 
 fn compare(name: &str, start: &[f64], function: impl Fn(&[f64]) -> Evaluation) {
     let with = crate::plain::solve(start.len(), start, &function, true);
     let without = crate::plain::solve(start.len(), start, &function, false);
-    let apart = apart(&with.x, &without.x);
+    let apart = relative_difference(&with.x, &without.x);
     println!(
         "{name:<30} with reuse {} JᵀJ in {} evaluations, without {} in {}, apart by {apart:.1e}",
         with.products, with.evaluations, without.products, without.evaluations
@@ -67,13 +67,13 @@ fn a_warm_start_ends_where_a_minimisation_does() {
     };
     let first = Plain::new(2, curve(0.0));
     let (optimum, _, _) = minimize(&first, vec![2.0, 0.1], &Options::default());
-    let normal: Normal = first.normal(&optimum);
+    let normal: NormalEquations = first.normal(&optimum);
     let warm = WarmStart::new(optimum, normal);
     for reuse in [true, false] {
         let other = Plain::new(2, curve(1.0));
         let (found, _, summary) = minimize_warm(&other, &warm, &Options { reuse, ..Options::default() });
         let (exact, _, _) = minimize(&other, warm.state().clone(), &to_the_last_digits(false));
-        let apart = apart(&found, &exact);
+        let apart = relative_difference(&found, &exact);
         println!("reuse {reuse}: {} iterations, apart from the optimum by {apart:.1e}", summary.iterations);
         // A decrement of 1e-7 of the mean square is 4e-4 of a standard deviation, which is a part in a thousand here.
         assert!(apart < 1e-6 && summary.termination.is_success());

@@ -1,6 +1,6 @@
 //! Cp and Cpk, with intervals.
 
-use super::Series;
+use super::FigureSeries;
 
 /// 97.5 % quantile of the normal distribution: 5 % lie beyond both sides.
 const NORMAL: f64 = 1.959_963_985;
@@ -29,8 +29,8 @@ impl Capability {
     /// Capability of a series with a lower and an upper limit, either of which may be missing: by the line's own spread, whose uncertainty is that of
     /// the observed spread times the squared ratio of both. `None` with fewer robots than [`FEWEST`](super::FEWEST), or without a spread.
     #[must_use]
-    pub fn from_series(series: &Series, low: Option<f64>, high: Option<f64>) -> Option<Self> {
-        let plain = Series { is_size: false, ..series.clone() };
+    pub fn from_series(series: &FigureSeries, low: Option<f64>, high: Option<f64>) -> Option<Self> {
+        let plain = FigureSeries { is_size: false, ..series.clone() };
         let spread = plain.spread().filter(|it| series.is_enough() && it.own > 0.0)?;
         let count = spread.count as f64;
         let mean = spread.center;
@@ -58,14 +58,14 @@ impl Capability {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fleet::series::tests::drawn;
+    use crate::fleet::series::tests::draw_line;
 
     #[test]
     fn intervals_hold_what_they_say() {
         for share in [0.0, 0.7] {
             let (mut inside, lines) = (0, 1000);
             for seed in 0..lines {
-                let series = drawn(seed, 100, share);
+                let series = draw_line(seed, 100, share);
                 let found = Capability::from_series(&series, Some(-4.0), Some(4.5)).unwrap().cpk;
                 inside += usize::from(found.low <= 4.0 / 3.0 && 4.0 / 3.0 <= found.high);
             }

@@ -5,7 +5,7 @@ use poecal_numerics::distributions::median;
 
 /// A figure of one robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Value {
+pub struct FigureValue {
     /// The robot's serial number.
     pub serial: String,
     /// The figure.
@@ -16,7 +16,7 @@ pub struct Value {
 
 /// A figure of many robots, in the order measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct FigureSeries {
     /// Name, like `joint2.offset`.
     pub name: String,
     /// Joint, if the figure belongs to one.
@@ -26,12 +26,12 @@ pub struct Series {
     /// True if it is a size, which is never below zero: sizes are compared by their logarithms.
     pub is_size: bool,
     /// The robots.
-    pub values: Vec<Value>,
+    pub values: Vec<FigureValue>,
 }
 
 /// Scatter of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub struct FigureSpread {
     /// Number of robots.
     pub count: usize,
     /// Median.
@@ -47,10 +47,10 @@ const OF_QUARTILES: f64 = 0.741_301_109_252_801;
 /// Share of the measurement's deviation below which the line's own deviation is not resolved.
 const LEAST: f64 = 0.3;
 
-impl Series {
+impl FigureSeries {
     /// Value and deviation in the form that is compared: sizes by their logarithms.
     #[must_use]
-    pub fn compared(&self, value: &Value) -> (f64, f64) {
+    pub fn comparison_value(&self, value: &FigureValue) -> (f64, f64) {
         if self.is_size {
             let size = value.value.max(f64::MIN_POSITIVE);
             (size.ln(), value.sigma / size)
@@ -62,8 +62,8 @@ impl Series {
     /// Scatter without the share of the measurement: the stated variances are subtracted. Outlying robots do not affect the middle half. `None` with
     /// fewer than four robots.
     #[must_use]
-    pub fn spread(&self) -> Option<Spread> {
-        let each: Vec<(f64, f64)> = self.values.iter().map(|it| self.compared(it)).collect();
+    pub fn spread(&self) -> Option<FigureSpread> {
+        let each: Vec<(f64, f64)> = self.values.iter().map(|it| self.comparison_value(it)).collect();
         let count = each.len();
         if count < 4 {
             return None;
@@ -74,7 +74,7 @@ impl Series {
         let seen = deviation(&sorted, center);
         let measured = each.iter().map(|it| it.1 * it.1).sum::<f64>() / count as f64;
         let own = (seen * seen - measured).max((LEAST * LEAST * measured).min(seen * seen)).max(0.0).sqrt();
-        Some(Spread { count, center, seen, own })
+        Some(FigureSpread { count, center, seen, own })
     }
 
     /// True if it is the length of a size over all joints: it belongs to no joint, and is nearly normal without a logarithm.
@@ -91,7 +91,7 @@ impl Series {
 }
 
 /// A figure of a typical robot: the median of all.
-pub fn typical(values: impl Iterator<Item = f64>) -> Option<f64> {
+pub fn typical_value(values: impl Iterator<Item = f64>) -> Option<f64> {
     median(values)
 }
 
@@ -120,14 +120,14 @@ pub(crate) mod tests {
     use poecal_model::simulate::random::normal;
 
     /// Robots of a line of spread 1, each measured with a standard deviation of `share` of it.
-    pub(crate) fn drawn(seed: u64, robots: usize, share: f64) -> Series {
+    pub(crate) fn draw_line(seed: u64, robots: usize, share: f64) -> FigureSeries {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        let values = (0..robots).map(|robot| Value {
+        let values = (0..robots).map(|robot| FigureValue {
             serial: robot.to_string(),
             value: normal(&mut generator) + share * normal(&mut generator),
             sigma: share,
         });
-        Series { name: "a".into(), joint: None, unit: "deg", is_size: false, values: values.collect() }
+        FigureSeries { name: "a".into(), joint: None, unit: "deg", is_size: false, values: values.collect() }
     }
 
     /// Subtraction leaves the line's own spread, even if the measurement scatters as much as the line.
@@ -137,7 +137,7 @@ pub(crate) mod tests {
             let mut squares = 0.0;
             let lines = 200;
             for seed in 0..lines {
-                let series = drawn(seed, 200, share);
+                let series = draw_line(seed, 200, share);
                 squares += (series.spread().unwrap().own - 1.0).powi(2);
             }
             let rms = (squares / lines as f64).sqrt();

@@ -1,6 +1,6 @@
 //! Steps and trends of a line: an exponentially weighted moving average of each figure.
 
-use super::{FEWEST, Series};
+use super::{FEWEST, FigureSeries};
 use poecal_numerics::distributions::median;
 
 /// Weight of the newest robot.
@@ -12,7 +12,7 @@ const OF_NEIGHBOURS: f64 = 0.953_872_552;
 
 /// A step of one figure.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct FigureStep {
     /// The figure.
     pub series: String,
     /// Joint, if the figure belongs to one.
@@ -41,11 +41,11 @@ pub fn moving_average(values: &[f64]) -> Vec<f64> {
 }
 
 /// The first step of a figure after its first thirty robots, relative to these; `None` without a step, or with fewer robots.
-fn step(series: &Series) -> Option<Step> {
+fn step(series: &FigureSeries) -> Option<FigureStep> {
     if series.values.len() <= FEWEST {
         return None;
     }
-    let values: Vec<f64> = series.values.iter().map(|it| series.compared(it).0).collect();
+    let values: Vec<f64> = series.values.iter().map(|it| series.comparison_value(it).0).collect();
     let neighbours = values.windows(2).map(|it| (it[1] - it[0]).abs());
     let sigma = median(neighbours)? / OF_NEIGHBOURS;
     if sigma <= 0.0 {
@@ -69,7 +69,7 @@ fn step(series: &Series) -> Option<Step> {
         if (average - center).abs() > LIMIT * width {
             let after = &values[from..=at];
             let size = after.iter().sum::<f64>() / after.len() as f64 - center;
-            return Some(Step {
+            return Some(FigureStep {
                 series: series.name.clone(),
                 joint: series.joint.clone(),
                 since: series.values[from].serial.clone(),
@@ -85,8 +85,8 @@ fn step(series: &Series) -> Option<Step> {
 
 /// The steps of all figures, in the order of their detection.
 #[must_use]
-pub fn steps(all: &[Series]) -> Vec<Step> {
-    let mut found: Vec<Step> = all.iter().filter_map(step).collect();
+pub fn steps(all: &[FigureSeries]) -> Vec<FigureStep> {
+    let mut found: Vec<FigureStep> = all.iter().filter_map(step).collect();
     found.sort_by_key(|it| it.seen_at);
     found
 }
@@ -97,15 +97,15 @@ mod tests {
     use rand_core::SeedableRng;
 
     use super::*;
-    use crate::fleet::Value;
+    use crate::fleet::FigureValue;
     use poecal_model::simulate::random::normal;
 
-    fn line(generator: &mut ChaCha8Rng, count: usize, at: usize, size: f64) -> Series {
+    fn line(generator: &mut ChaCha8Rng, count: usize, at: usize, size: f64) -> FigureSeries {
         let values = (0..count).map(|robot| {
             let value = normal(generator) + if robot >= at { size } else { 0.0 };
-            Value { serial: robot.to_string(), value, sigma: 0.0 }
+            FigureValue { serial: robot.to_string(), value, sigma: 0.0 }
         });
-        Series { name: "a".into(), joint: None, unit: "deg", is_size: false, values: values.collect() }
+        FigureSeries { name: "a".into(), joint: None, unit: "deg", is_size: false, values: values.collect() }
     }
 
     #[test]

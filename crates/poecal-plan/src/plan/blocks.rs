@@ -6,13 +6,13 @@ use poecal_numerics::linalg;
 
 /// Whitened rows of configurations, one after the other, with `numbers` and `columns` each.
 #[derive(Clone, Debug)]
-pub(crate) struct Blocks {
+pub(crate) struct ConfigurationRows {
     pub(crate) values: Vec<f64>,
     pub(crate) numbers: usize,
     pub(crate) columns: usize,
 }
 
-impl Blocks {
+impl ConfigurationRows {
     /// Number of configurations.
     pub(crate) fn count(&self) -> usize {
         self.values.len() / (self.numbers * self.columns).max(1)
@@ -35,14 +35,19 @@ impl Blocks {
     }
 
     /// The first columns alone.
-    pub(crate) fn first(&self, columns: usize) -> Blocks {
+    pub(crate) fn first_columns(&self, columns: usize) -> ConfigurationRows {
         let rows = self.values.chunks_exact(self.columns);
-        Blocks { values: rows.flat_map(|row| row[..columns].iter().copied()).collect(), columns, ..*self }
+        ConfigurationRows {
+            values: rows.flat_map(|row| row[..columns].iter().copied()).collect(),
+            columns,
+            ..*self
+        }
     }
 
     /// The configurations of some indices.
-    pub(crate) fn only(&self, some: &[usize]) -> Blocks {
-        let values = some.iter().flat_map(|&index| self.rows_of_configuration(index).iter().copied()).collect();
-        Blocks { values, ..*self }
+    pub(crate) fn select(&self, some: &[usize]) -> ConfigurationRows {
+        let values =
+            some.iter().flat_map(|&index| self.rows_of_configuration(index).iter().copied()).collect();
+        ConfigurationRows { values, ..*self }
     }
 }

@@ -1,8 +1,8 @@
 //! Data of the criterion for each candidate, kept up to date while configurations are chosen.
 
-use super::blocks::Blocks;
-use super::change::{Change, MOST_NUMBERS, dot, weight};
-use super::state::{Aim, State, Weights, own_rows, scaled};
+use super::blocks::ConfigurationRows;
+use super::change::{MOST_NUMBERS, PlanChange, dot, weight};
+use super::state::{CovarianceState, CriterionContext, CriterionWeights, own_rows, scale_rows};
 use poecal_numerics::kernels::by_best;
 
 /// Data of the criterion for each candidate, kept up to date.
@@ -28,13 +28,13 @@ impl Caches {
         2 * self.m * self.c
     }
 
-    pub(crate) fn new(state: &State, aim: &Aim, blocks: &Blocks) -> Self {
+    pub(crate) fn new(state: &CovarianceState, aim: &CriterionContext, blocks: &ConfigurationRows) -> Self {
         let (m, c) = (blocks.numbers, aim.modes());
         let mut made = Caches { m, c, small: Vec::new(), long: Vec::new() };
         let count = blocks.count();
         made.small = vec![0.0; count * made.small_len()];
         made.long = vec![0.0; count * made.long_len()];
-        made.each(|index, small, long| {
+        made.for_each_part(|index, small, long| {
             let rows = blocks.rows_of_configuration(index);
             by_best(
                 #[inline(always)]
@@ -45,7 +45,7 @@ impl Caches {
     }
 
     /// Calls with the parts of each candidate.
-    fn each(&mut self, one: impl Fn(usize, &mut [f64], &mut [f64]) + Sync + Send) {
+    fn for_each_part(&mut self, one: impl Fn(usize, &mut [f64], &mut [f64]) + Sync + Send) {
         let (small_len, long_len) = (self.small_len(), self.long_len());
         let count = self.small.len() / small_len.max(1);
         if long_len == 0 {
@@ -75,7 +75,7 @@ impl Caches {
     }
 
     /// Brings all up to date after a change.
-    pub(crate) fn apply(&mut self, aim: &Aim, blocks: &Blocks, change: &Change) {
+    pub(crate) fn apply(&mut self, aim: &CriterionContext, blocks: &ConfigurationRows, change: &PlanChange) {
         match self.m {
             ..=3 => self.apply_of::<9>(aim, blocks, change),
             4..=6 => self.apply_of::<36>(aim, blocks, change),
@@ -83,9 +83,14 @@ impl Caches {
         }
     }
 
-    fn apply_of<const S: usize>(&mut self, aim: &Aim, blocks: &Blocks, change: &Change) {
+    fn apply_of<const S: usize>(
+        &mut self,
+        aim: &CriterionContext,
+        blocks: &ConfigurationRows,
+        change: &PlanChange,
+    ) {
         let (m, c, root) = (self.m, self.c, aim.share.sqrt());
-        self.each(|index, small, long| {
+        self.for_each_part(|index, small, long| {
             let rows = blocks.rows_of_configuration(index);
             by_best(
                 #[inline(always)]
@@ -95,7 +100,7 @@ impl Caches {
     }
 
     /// Decrease of the criterion with an additional candidate; below zero if its rows cannot be used.
-    pub(crate) fn gain(&self, index: usize, weights: &Weights) -> f64 {
+    pub(crate) fn gain(&self, index: usize, weights: &CriterionWeights) -> f64 {
         match self.m {
             ..=3 => self.gain_of::<9>(index, weights),
             4..=6 => self.gain_of::<36>(index, weights),
@@ -103,7 +108,7 @@ impl Caches {
         }
     }
 
-    fn gain_of<const S: usize>(&self, index: usize, weights: &Weights) -> f64 {
+    fn gain_of<const S: usize>(&self, index: usize, weights: &CriterionWeights) -> f64 {
         let (m, square) = (self.m, self.m * self.m);
         let small = &self.small[index * self.small_len()..(index + 1) * self.small_len()];
         let part = |at: usize| &small[at * square..(at + 1) * square];
@@ -137,9 +142,14 @@ impl Caches {
 
 /// Initial data of a candidate.
 #[inline(always)]
-fn begin(state: &State, aim: &Aim, (rows, m): (&[f64], usize), (small, long): (&mut [f64], &mut [f64])) {
+fn begin(
+    state: &CovarianceState,
+    aim: &CriterionContext,
+    (rows, m): (&[f64], usize),
+    (small, long): (&mut [f64], &mut [f64]),
+) {
     let (g, c) = (aim.geometry, aim.modes());
-    let scaled = scaled(rows, aim);
+    let scaled = scale_rows(rows, aim);
     let mut own = vec![0.0; g + c];
     let parts = [
         (0, &state.own[0], g, &scaled[..]),
@@ -172,9 +182,9 @@ fn follow<const S: usize>(
     (rows, n): (&[f64], usize),
     (small, long): (&mut [f64], &mut [f64]),
     (m, c, root): (usize, usize, f64),
-    change: &Change,
+    change: &PlanChange,
 ) {
-    let Change { own, all, pulled, turned } = change;
+    let PlanChange { own, all, pulled, turned } = change;
     let (mut a, mut b) = ([0.0; S], [0.0; S]);
     for (at, part, scale) in [(0, Some(own), root), (2, all.as_ref(), 1.0)] {
         let Some(part) = part else { continue };

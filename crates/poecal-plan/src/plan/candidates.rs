@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::conditions::{Checker, Conditions, Obstacle, Refusals};
+use super::conditions::{Checker, Conditions, Obstacle, RefusalCounts};
 use super::experiment::WORKSPACE;
 use poecal_model::robot::Robot;
 use poecal_model::simulate::Configurations;
@@ -68,10 +68,10 @@ pub(crate) fn draw_measurable(
     checker: &Checker<'_>,
     count: usize,
     generator: &mut ChaCha8Rng,
-    refusals: &mut Refusals,
+    refusals: &mut RefusalCounts,
 ) -> Vec<f64> {
     draw(checker, count, generator, |checker, readings| {
-        let obstacle = checker.measured(readings);
+        let obstacle = checker.obstacle_to_measuring(readings);
         refusals.add(obstacle);
         obstacle.is_none()
     })
@@ -82,11 +82,11 @@ pub(crate) fn keep_measurable(
     checker: &Checker<'_>,
     (list, width): (&[f64], usize),
     conditions: &Conditions,
-    refusals: &mut Refusals,
+    refusals: &mut RefusalCounts,
 ) -> (Vec<f64>, Option<Vec<usize>>) {
     let origins: Vec<usize> = (0..list.len() / width)
         .filter(|&at| {
-            let found = checker.measured(&list[at * width..(at + 1) * width]);
+            let found = checker.obstacle_to_measuring(&list[at * width..(at + 1) * width]);
             // The robot was in these configurations, so no limit of a model forbids them.
             let found = found.filter(|&it| it != Obstacle::Limits || conditions.margin.is_some());
             refusals.add(found);

@@ -22,7 +22,7 @@ pub struct Capsule {
 impl Capsule {
     /// A capsule that contains balls of a radius about all of some points: along the direction of their greatest spread. `None` without points.
     #[must_use]
-    pub fn around(link: &str, body: Body, points: &[Vector3<f64>], grown_m: f64) -> Option<Capsule> {
+    pub fn enclosing(link: &str, body: Body, points: &[Vector3<f64>], grown_m: f64) -> Option<Capsule> {
         let count = points.len();
         if count == 0 || !points.iter().all(|point| point.iter().all(|it| it.is_finite())) {
             return None;
@@ -77,7 +77,7 @@ impl Capsule {
 }
 
 /// Distance between two segments.
-pub(crate) fn between([a, b]: &[Vector3<f64>; 2], [c, d]: &[Vector3<f64>; 2]) -> f64 {
+pub(crate) fn segment_distance([a, b]: &[Vector3<f64>; 2], [c, d]: &[Vector3<f64>; 2]) -> f64 {
     let (u, v, w) = (b - a, d - c, a - c);
     let (uu, uv, vv, uw, vw) = (u.dot(&u), u.dot(&v), v.dot(&v), u.dot(&w), v.dot(&w));
     let determinant = uu * vv - uv * uv;
@@ -105,9 +105,9 @@ mod tests {
             let stretch = random::normal_vector(&mut generator);
             let points: Vec<Vector3<f64>> =
                 (0..40).map(|_| random::normal_vector(&mut generator).component_mul(&stretch)).collect();
-            let capsule = Capsule::around("link", Body::Base, &points, 0.0).unwrap();
+            let capsule = Capsule::enclosing("link", Body::Base, &points, 0.0).unwrap();
             for point in &points {
-                let off = between(&capsule.ends, &[*point, *point]);
+                let off = segment_distance(&capsule.ends, &[*point, *point]);
                 assert!(off <= capsule.radius_m, "{off} {}", capsule.radius_m);
             }
             let mut end = || random::normal_vector(&mut generator);
@@ -117,7 +117,7 @@ mod tests {
                 .flat_map(|i| (0..=200).map(move |j| (i, j)))
                 .map(|(i, j)| (at(&first, i) - at(&second, j)).norm())
                 .fold(f64::INFINITY, f64::min);
-            let found = between(&first, &second);
+            let found = segment_distance(&first, &second);
             assert!(found <= sampled + 1e-12);
             worst = worst.max(sampled - found);
         }

@@ -75,7 +75,7 @@ const LEAST_PIVOT: f64 = 1e-9;
 
 /// Rows of a changed configuration, against covariances.
 #[derive(Clone, Debug)]
-pub(crate) struct Part {
+pub(crate) struct ChangedRows {
     /// Number of used columns.
     pub(crate) n: usize,
     /// `H⁻¹ Jᵀ` and `P Jᵀ`, a row for each number.
@@ -87,13 +87,13 @@ pub(crate) struct Part {
     pub(crate) wtw: Vec<f64>,
 }
 
-impl Part {
+impl ChangedRows {
     pub(crate) fn new(
         [h, p]: &[DMatrix<f64>; 2],
         rows: &[f64],
         (m, stride, n): (usize, usize, usize),
         sign: f64,
-    ) -> Option<Part> {
+    ) -> Option<ChangedRows> {
         let times = |matrix: &DMatrix<f64>| {
             let mut out = vec![0.0; m * n];
             for i in 0..m {
@@ -119,7 +119,7 @@ impl Part {
         weight(&s, m, sign, &mut w)?;
         let w = w[..m * m].to_vec();
         let wtw = product(&w, &product(&t, &w, m), m);
-        Some(Part { n, k, l, w, t, wtw })
+        Some(ChangedRows { n, k, l, w, t, wtw })
     }
 
     pub(crate) fn apply(&self, [h, p]: &mut [DMatrix<f64>; 2], m: usize) {
@@ -149,9 +149,9 @@ impl Part {
 
 /// Addition or removal of a configuration.
 #[derive(Clone, Debug)]
-pub(crate) struct Change {
-    pub(crate) own: Part,
-    pub(crate) all: Option<Part>,
+pub(crate) struct PlanChange {
+    pub(crate) own: ChangedRows,
+    pub(crate) all: Option<ChangedRows>,
     /// `W R` and `W (Z + T W R)`.
     pub(crate) pulled: Vec<f64>,
     pub(crate) turned: Vec<f64>,

@@ -2,14 +2,14 @@
 
 use nalgebra::DMatrix;
 
-use super::blocks::Blocks;
+use super::blocks::ConfigurationRows;
 use super::conditions::Checker;
 use super::experiment::inverse;
 use super::make::Planner;
 use super::options::PlanCriterion;
-use super::order::Travel;
-use super::search::{Search, around};
-use super::state::{Aim, Weights};
+use super::order::TravelDistance;
+use super::search::{PlanSearch, improve_nearby};
+use super::state::{CriterionContext, CriterionWeights};
 use poecal_model::robot::ReadingKind;
 use poecal_model::simulate::random;
 use poecal_numerics::error::Result;
@@ -24,26 +24,26 @@ const LARGEST_ROUNDS: usize = 6;
 
 impl Planner<'_> {
     /// The candidates of the list, by the criterion.
-    pub(crate) fn chosen(&self, count: usize) -> Vec<usize> {
-        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
+    pub(crate) fn choose(&self, count: usize) -> Vec<usize> {
+        let travel = TravelDistance::new(&self.experiment.robot, self.experiment.length_m());
         let (width, least) = (self.experiment.width(), self.options.conditions.separation_rad);
         let at = |index: usize| &self.candidates[index * width..(index + 1) * width];
         let apart = |a: usize, b: usize| least <= 0.0 || travel.distance(at(a), at(b)) >= least;
-        let best = |aim: &Aim, kept: &DMatrix<f64>, blocks: &Blocks| {
-            Search { aim, kept, blocks, apart: &apart }.list(count, self.options.seed)
+        let best = |aim: &CriterionContext, kept: &DMatrix<f64>, blocks: &ConfigurationRows| {
+            PlanSearch { aim, kept, blocks, apart: &apart }.list(count, self.options.seed)
         };
         if self.options.criterion == PlanCriterion::Expected {
             return best(&self.aim, &self.kept, &self.blocks);
         }
         let g = self.experiment.geometry();
-        let blocks = self.blocks.first(g);
+        let blocks = self.blocks.first_columns(g);
         let kept = self.kept.view((0, 0), (g, g)).into_owned();
         let aim = |moments: DMatrix<f64>, determinant: f64| {
             let calibrated = if determinant > 0.0 { 0.0 } else { 1.0 };
-            Aim::new(
+            CriterionContext::new(
                 &self.experiment.prior,
                 moments,
-                Weights { calibrated, corrected: 0.0, determinant },
+                CriterionWeights { calibrated, corrected: 0.0, determinant },
                 self.experiment.share(),
             )
         };
@@ -53,16 +53,16 @@ impl Planner<'_> {
             }
             PlanCriterion::A => best(&aim(DMatrix::identity(g, g), 0.0), &kept, &blocks),
             PlanCriterion::E | PlanCriterion::G => {
-                self.largest(&kept, &blocks, |moments| best(&aim(moments, 0.0), &kept, &blocks))
+                self.choose_minimax(&kept, &blocks, |moments| best(&aim(moments, 0.0), &kept, &blocks))
             }
         }
     }
 
     /// A list with a small largest variance: the weights of its mean squares follow a power of the variances of the list before.
-    pub(crate) fn largest(
+    pub(crate) fn choose_minimax(
         &self,
         kept: &DMatrix<f64>,
-        blocks: &Blocks,
+        blocks: &ConfigurationRows,
         best: impl Fn(DMatrix<f64>) -> Vec<usize>,
     ) -> Vec<usize> {
         let g = self.experiment.geometry();
@@ -99,11 +99,11 @@ impl Planner<'_> {
     }
 
     /// Searches around each configuration for better ones.
-    pub(crate) fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut Blocks) -> Result<()> {
+    pub(crate) fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut ConfigurationRows) -> Result<()> {
         let robot = &self.experiment.robot;
-        let checker =
-            Checker::new(robot, &self.options.conditions).avoiding(&self.avoided, self.experiment.length_m());
-        let travel = Travel::new(robot, self.experiment.length_m());
+        let checker = Checker::new(robot, &self.options.conditions)
+            .with_avoided(&self.avoided, self.experiment.length_m());
+        let travel = TravelDistance::new(robot, self.experiment.length_m());
         let least = self.options.conditions.separation_rad;
         let kinds: Vec<ReadingKind> =
             robot.reading_names().iter().map(|name| robot.reading_kind(name)).collect();
@@ -116,7 +116,7 @@ impl Planner<'_> {
                     let mut near = own.clone();
                     // All joints, or a single one.
                     let only = (proposal % 2 == 1)
-                        .then(|| (random::uniform(&mut self.generator) * kinds.len() as f64) as usize);
+                        .then(|| (random::uniform_number(&mut self.generator) * kinds.len() as f64) as usize);
                     for (joint, (value, kind)) in near.iter_mut().zip(&kinds).enumerate() {
                         let by = step * random::normal(&mut self.generator);
                         if only.is_none_or(|only| only == joint) {
@@ -127,8 +127,8 @@ impl Planner<'_> {
                             }
                         }
                     }
-                    let near = checker.configurations().nearest(&near);
-                    if checker.measured(&near).is_none() {
+                    let near = checker.configurations().nearest_to(&near);
+                    if checker.obstacle_to_measuring(&near).is_none() {
                         proposals.extend(near);
                         owners.push(owner);
                     }
@@ -136,7 +136,7 @@ impl Planner<'_> {
             }
             let blocks = self.experiment.blocks(&proposals)?;
             let width = self.experiment.width();
-            around(&self.aim, &self.kept, rows, &blocks, &owners, |row, proposal| {
+            improve_nearby(&self.aim, &self.kept, rows, &blocks, &owners, |row, proposal| {
                 let own = &proposals[proposal * width..(proposal + 1) * width];
                 let others = readings.iter().enumerate().filter(|it| it.0 != row);
                 let is_apart =

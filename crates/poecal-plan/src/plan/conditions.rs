@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::capsule::{Capsule, between};
-use super::order::Travel;
+use super::capsule::{Capsule, segment_distance};
+use super::order::TravelDistance;
 use super::skeleton::{links, targets, to_targets};
 use poecal_arm::lie::Pose;
 use poecal_model::robot::{Body, ReadingKind, Robot};
@@ -39,14 +39,14 @@ pub struct Conditions {
     /// Least change of a joint between any two configurations, radians; for a sliding joint over the length that a radian counts.
     pub separation_rad: f64,
     /// View of the device.
-    pub sight: Option<Sight>,
+    pub sight: Option<DeviceView>,
     /// Shapes of the links. Without any, neither self-collision nor hidden targets are found, and keep-out boxes and floor hold for the axes alone.
     pub capsules: Vec<Capsule>,
 }
 
 /// Position of a device, and its field of view.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sight {
+pub struct DeviceView {
     /// Position, metres.
     pub place: Vector3<f64>,
     /// A point at which it aims, and half the angle of its cone, radians.
@@ -114,13 +114,13 @@ impl Obstacle {
 
 /// Number of configurations that each condition rejected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Refusals {
+pub struct RefusalCounts {
     counts: [usize; Obstacle::ALL.len()],
     /// Number of examined configurations.
     pub tried: usize,
 }
 
-impl Refusals {
+impl RefusalCounts {
     pub(crate) fn add(&mut self, obstacle: Option<Obstacle>) {
         self.tried += 1;
         if let Some(obstacle) = obstacle {
@@ -129,7 +129,7 @@ impl Refusals {
     }
 
     /// Conditions that rejected some, with their numbers.
-    pub fn each(&self) -> impl Iterator<Item = (Obstacle, usize)> {
+    pub fn iter_counts(&self) -> impl Iterator<Item = (Obstacle, usize)> {
         Obstacle::ALL.into_iter().zip(self.counts).filter(|it| it.1 > 0)
     }
 
@@ -137,7 +137,7 @@ impl Refusals {
     #[must_use]
     pub fn words(&self) -> String {
         let mut out = String::new();
-        for (obstacle, count) in self.each() {
+        for (obstacle, count) in self.iter_counts() {
             // Writing to a String cannot fail.
             let _ = write!(out, "{}{count} by {}", if out.is_empty() { "" } else { ", " }, obstacle.words());
         }
@@ -154,7 +154,7 @@ pub(crate) struct Checker<'a> {
     allowed: Configurations,
     conditions: &'a Conditions,
     avoided: &'a [f64],
-    travel: Travel,
+    travel: TravelDistance,
     /// Pairs of capsules that must not overlap.
     pairs: Vec<(usize, usize)>,
     /// Pairs that overlap in every configuration and are left out.
@@ -163,7 +163,7 @@ pub(crate) struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     pub(crate) fn new(robot: &'a Robot, conditions: &'a Conditions) -> Self {
-        let within = |usual| Configurations::new(robot).within(conditions.margin.unwrap_or(usual));
+        let within = |usual| Configurations::new(robot).shrink_ranges(conditions.margin.unwrap_or(usual));
         let (configurations, allowed) = (within(Configurations::MARGIN).within_a_turn(), within([0.0; 2]));
         let capsules = &conditions.capsules;
         let before = |body: Body| body.joint().map(|joint| robot.body_before(joint));
@@ -181,7 +181,8 @@ impl<'a> Checker<'a> {
             let segments: Vec<_> = capsules.iter().map(|it| it.segment(&frames)).collect();
             for (is_always, &(a, b)) in always.iter_mut().zip(&pairs) {
                 *is_always = *is_always
-                    && between(&segments[a], &segments[b]) < capsules[a].radius_m + capsules[b].radius_m;
+                    && segment_distance(&segments[a], &segments[b])
+                        < capsules[a].radius_m + capsules[b].radius_m;
             }
         }
         let mut left_out: Vec<(String, String)> = Vec::new();
@@ -200,15 +201,15 @@ impl<'a> Checker<'a> {
             allowed,
             conditions,
             avoided: &[],
-            travel: Travel::new(robot, 1.0),
+            travel: TravelDistance::new(robot, 1.0),
             pairs,
             left_out,
         }
     }
 
     /// The checker with configurations that others must avoid.
-    pub(crate) fn avoiding(self, avoided: &'a [f64], length_m: f64) -> Self {
-        Checker { avoided, travel: Travel::new(self.robot, length_m), ..self }
+    pub(crate) fn with_avoided(self, avoided: &'a [f64], length_m: f64) -> Self {
+        Checker { avoided, travel: TravelDistance::new(self.robot, length_m), ..self }
     }
 
     /// Ranges of chosen readings.
@@ -246,7 +247,7 @@ impl<'a> Checker<'a> {
             return Some(Obstacle::Floor);
         }
         let overlaps = |&(a, b): &(usize, usize)| {
-            between(&segments[a], &segments[b]) < capsules[a].radius_m + capsules[b].radius_m
+            segment_distance(&segments[a], &segments[b]) < capsules[a].radius_m + capsules[b].radius_m
         };
         self.pairs.iter().any(overlaps).then_some(Obstacle::Collision)
     }
@@ -268,7 +269,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Obstacle to measuring there.
-    pub(crate) fn measured(&self, readings: &[f64]) -> Option<Obstacle> {
+    pub(crate) fn obstacle_to_measuring(&self, readings: &[f64]) -> Option<Obstacle> {
         let mut avoided = self.avoided.chunks_exact(readings.len().max(1));
         if avoided.any(|it| self.travel.distance(it, readings) < AWAY_RAD) {
             return Some(Obstacle::Avoided);
@@ -300,10 +301,13 @@ impl<'a> Checker<'a> {
                 let segment = capsule.segment(&frames);
                 // The link before may be slimmer beside the target than its capsule: then it hides only lines of sight past its middle.
                 let is_before = body.joint().map(|joint| self.robot.body_before(joint)) == Some(capsule.body);
-                let slim =
-                    if is_before { between(&segment, &[place, place]) - AT_TARGET_M } else { f64::INFINITY };
+                let slim = if is_before {
+                    segment_distance(&segment, &[place, place]) - AT_TARGET_M
+                } else {
+                    f64::INFINITY
+                };
                 let around = capsule.radius_m.min(slim);
-                capsule.body != body && between(&segment, &[sight.place, end]) < around
+                capsule.body != body && segment_distance(&segment, &[sight.place, end]) < around
             };
             if self.conditions.capsules.iter().any(hides) {
                 return Some(Obstacle::Hidden);

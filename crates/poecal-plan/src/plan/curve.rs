@@ -1,10 +1,10 @@
 //! Decrease of the expected error with the number of configurations.
 
-use super::expected::{CurvePoint, ExpectedErrors};
-use super::experiment::undetermined;
+use super::error_curve::{CurvePoint, ExpectedErrors};
+use super::experiment::undetermined_error;
 use super::make::Planner;
-use super::search::Search;
-use super::state::Squares;
+use super::search::PlanSearch;
+use super::state::WorkspaceErrors;
 use poecal_numerics::error::Result;
 
 /// Numbers of configurations of the curve.
@@ -14,12 +14,12 @@ const OF_CURVE: usize = 800;
 
 impl Planner<'_> {
     /// Expected errors of lists of other lengths, each the beginning of the next.
-    pub(crate) fn curve(&self, new: usize, planned: &Squares) -> Result<Vec<CurvePoint>> {
+    pub(crate) fn curve(&self, new: usize, planned: &WorkspaceErrors) -> Result<Vec<CurvePoint>> {
         let most = COUNTS.last().copied().unwrap_or(0);
         let every = (self.blocks.count() / OF_CURVE).max(1);
         let some: Vec<usize> = (0..self.blocks.count()).step_by(every).collect();
-        let blocks = self.blocks.only(&some);
-        let search = Search { aim: &self.aim, kept: &self.kept, blocks: &blocks, apart: &|_, _| true };
+        let blocks = self.blocks.select(&some);
+        let search = PlanSearch { aim: &self.aim, kept: &self.kept, blocks: &blocks, apart: &|_, _| true };
         let order = search.greedy(Vec::new(), most.min(blocks.count()));
         let mut points = Vec::new();
         let mut counts: Vec<usize> = COUNTS.iter().copied().filter(|&count| count <= order.len()).collect();
@@ -27,8 +27,8 @@ impl Planner<'_> {
         counts.sort_unstable();
         counts.dedup();
         // The gain of exchanges at the planned number is assumed for others.
-        let here = search.squares(&order[..new.min(order.len())]).ok_or_else(undetermined)?;
-        let gain = Squares {
+        let here = search.squares(&order[..new.min(order.len())]).ok_or_else(undetermined_error)?;
+        let gain = WorkspaceErrors {
             noise: ratio(planned.noise, here.noise),
             true_noise: ratio(planned.true_noise, here.true_noise),
             terms: ratio(planned.terms, here.terms),
@@ -39,8 +39,8 @@ impl Planner<'_> {
             let squares = if count == new {
                 *planned
             } else {
-                let found = search.squares(&order[..count]).ok_or_else(undetermined)?;
-                Squares {
+                let found = search.squares(&order[..count]).ok_or_else(undetermined_error)?;
+                WorkspaceErrors {
                     noise: found.noise * gain.noise,
                     true_noise: found.true_noise * gain.true_noise,
                     terms: found.terms * gain.terms,

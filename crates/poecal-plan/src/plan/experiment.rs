@@ -4,16 +4,18 @@ use nalgebra::{DMatrix, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::blocks::Blocks;
+use super::blocks::ConfigurationRows;
 use super::options::PlannedFit;
 use poecal_arm::lie::Pose;
 use poecal_calibrate::{unknowns, whitened_rows};
 use poecal_fit::analysis::{PlannedSession, predicted_data};
 use poecal_fit::parameters::Parameter;
 use poecal_fit::problem::{Layout, Prior, Problem, TermPrior};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session, Unknowns, delivered, radian_m};
+use poecal_fit::state::{
+    Estimate, Linkage, PackedValues, RowChain, Session, Unknowns, nominal_estimate, radian_m,
+};
 use poecal_model::measurement::{Dataset, Noise};
-use poecal_model::robot::{CorrectionModel, Corrections, Extent, Robot, Sizes, Tolerance};
+use poecal_model::robot::{CorrectionExtent, CorrectionModel, Corrections, Robot, Sizes, Tolerance};
 use poecal_model::simulate::random_configuration;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::linalg;
@@ -28,7 +30,7 @@ const SEED: u64 = 1;
 const ITERATIONS: usize = 30;
 
 /// A planned session at the nominal model: columns, priors, and the expected size of noise and joint terms.
-pub(crate) struct Experiment {
+pub(crate) struct PlannedExperiment {
     /// The nominal robot.
     pub(crate) robot: Robot,
     /// The same with the terms of the joints.
@@ -68,23 +70,23 @@ pub(crate) struct Experiment {
     pub(crate) is_guess: bool,
 }
 
-impl Experiment {
+impl PlannedExperiment {
     /// Refuses kinds of measurement whose configurations cannot be chosen freely.
     pub(crate) fn new(robot: &Robot, fit: &PlannedFit) -> Result<Self> {
-        Experiment::made(robot, fit, None)
+        PlannedExperiment::make(robot, fit, None)
     }
 
     /// An experiment of begun measurements, about an estimate that predicts them: its rows are like theirs.
-    pub(crate) fn begun(
+    pub(crate) fn from_begun(
         robot: &Robot,
         fit: &PlannedFit,
         data: &Dataset,
         registered: &Estimate,
     ) -> Result<Self> {
-        Experiment::made(robot, fit, Some((data, registered)))
+        PlannedExperiment::make(robot, fit, Some((data, registered)))
     }
 
-    fn made(robot: &Robot, fit: &PlannedFit, begun: Option<(&Dataset, &Estimate)>) -> Result<Self> {
+    fn make(robot: &Robot, fit: &PlannedFit, begun: Option<(&Dataset, &Estimate)>) -> Result<Self> {
         let kind = fit.session.kind;
         if !kind.is_chosen_freely() {
             return ErrorKind::Option.refuse(format!(
@@ -99,7 +101,7 @@ impl Experiment {
             Corrections::Sizes(sizes) => sizes,
             Corrections::Auto | Corrections::All => Sizes::COMMON,
         };
-        let extent = Extent { gives: fit.corrections.gives(), ..Extent::default() };
+        let extent = CorrectionExtent { gives: fit.corrections.gives(), ..CorrectionExtent::default() };
         let every = vec![true; robot.joints.len()];
         let corrected = CorrectionModel::new(&robot, fit.gravity, &every, extent).with_sizes(&sizes);
         let has_terms = sizes != Sizes::NONE && corrected.terms().next().is_some();
@@ -112,10 +114,10 @@ impl Experiment {
         let sample: Vec<f64> =
             (0..SAMPLE).flat_map(|_| random_configuration(&robot, &mut generator)).collect();
         let width = robot.reading_names().len();
-        let mut found = Experiment {
-            length_m: radian_m(&robot, &Packed::new(&robot, &sample, width)),
+        let mut found = PlannedExperiment {
+            length_m: radian_m(&robot, &PackedValues::new(&robot, &sample, width)),
             estimate: Estimate::new(&model, vec![model.home], Pose::identity()),
-            template: begun.map(|(data, _)| data.only(&one_of_each(data))),
+            template: begun.map(|(data, _)| data.select_rows(&one_of_each(data))),
             deviations: Vec::new(),
             tolerance: fit.tolerance.unwrap_or(Tolerance::WIDE),
             free: Vec::new(),
@@ -160,16 +162,16 @@ impl Experiment {
         self.geometry.len()
     }
 
-    fn repeated(&self, readings: &[f64]) -> Vec<f64> {
+    fn repeat_readings(&self, readings: &[f64]) -> Vec<f64> {
         readings.chunks_exact(self.width()).flat_map(|own| own.repeat(self.repeats)).collect()
     }
 
     /// Rows of configurations, and device frames other than the model's.
     pub(crate) fn data(&self, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
         let Some(template) = &self.template else {
-            return predicted_data(&self.robot, &self.repeated(readings), &self.session);
+            return predicted_data(&self.robot, &self.repeat_readings(readings), &self.session);
         };
-        let mut data = template.only(&[]);
+        let mut data = template.select_rows(&[]);
         for own in readings.chunks_exact(self.width()) {
             for observation in &template.observations {
                 data.push_observation(own, *observation)?;
@@ -180,7 +182,7 @@ impl Experiment {
 
     /// An estimate of the robot as one of the robot with compliant joints and terms of zero.
     pub(crate) fn with_gives(&self, registered: &Estimate, data: &Dataset) -> Estimate {
-        let mut estimate = delivered(&self.model, data);
+        let mut estimate = nominal_estimate(&self.model, data);
         estimate.base_from_target.clone_from(&registered.base_from_target);
         estimate.device_from_base = registered.device_from_base;
         estimate.further_devices.clone_from(&registered.further_devices);
@@ -188,8 +190,8 @@ impl Experiment {
     }
 
     /// The fit of geometry and terms with their priors to rows, starting at the estimate, and its remaining cost.
-    pub(crate) fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
-        let packed = Packed::from_dataset(&self.model, data);
+    pub(crate) fn fit_terms(&self, data: &Dataset) -> (Estimate, f64) {
+        let packed = PackedValues::from_dataset(&self.model, data);
         let session = self.session_of(data, &packed);
         let prior = Prior::from_session(&session, self.tolerance).with_terms(self.deviations.clone());
         let problem = Problem::new(session, data.all_rows(), self.free.clone(), self.session.noise)
@@ -199,9 +201,9 @@ impl Experiment {
         (estimate, normal.cost)
     }
 
-    /// Whitened rows of measurements at the estimate, as [`Experiment::blocks`], and their residuals; each row a block of its own.
+    /// Whitened rows of measurements at the estimate, as [`PlannedExperiment::blocks`], and their residuals; each row a block of its own.
     pub(crate) fn rows(&self, data: &Dataset) -> (DMatrix<f64>, nalgebra::DVector<f64>) {
-        let packed = Packed::from_dataset(&self.model, data);
+        let packed = PackedValues::from_dataset(&self.model, data);
         let rows = data.all_rows();
         let problem =
             Problem::new(self.session_of(data, &packed), rows.clone(), self.free.clone(), self.session.noise);
@@ -238,20 +240,20 @@ impl Experiment {
         own.flatten().filter_map(|place| self.geometry.binary_search(&place).ok()).collect()
     }
 
-    pub(crate) fn session_of<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
+    pub(crate) fn session_of<'a>(&'a self, data: &'a Dataset, packed: &'a PackedValues) -> Session<'a> {
         Session::new(&self.model, data, packed, self.session.device_free)
             .with_unknowns(&self.unknowns)
             .with_length(self.length_m)
     }
 
     /// The rows of configurations as linear functions of geometry and modes.
-    pub(crate) fn blocks(&self, readings: &[f64]) -> Result<Blocks> {
+    pub(crate) fn blocks(&self, readings: &[f64]) -> Result<ConfigurationRows> {
         const CHUNK: usize = 512;
         let columns = self.geometry.len() + self.turn.ncols();
         let mut values = Vec::with_capacity(readings.len() / self.width() * self.numbers * columns);
         for some in readings.chunks(CHUNK * self.width()) {
             let (data, _) = self.data(some)?;
-            let packed = Packed::from_dataset(&self.model, &data);
+            let packed = PackedValues::from_dataset(&self.model, &data);
             let rows = data.all_rows();
             let session = self.session_of(&data, &packed);
             let problem = Problem::new(session, rows.clone(), self.free.clone(), self.session.noise);
@@ -265,7 +267,7 @@ impl Experiment {
                 values.extend(terms.row(row).iter());
             }
         }
-        Ok(Blocks { values, numbers: self.numbers, columns })
+        Ok(ConfigurationRows { values, numbers: self.numbers, columns })
     }
 
     /// Second moments of the motion of the targets by the unknowns, mean over configurations, m² for steps of one.
@@ -288,10 +290,10 @@ impl Experiment {
     fn motions(&self, readings: &[f64]) -> (DMatrix<f64>, usize) {
         let columns = self.geometry.len() + self.turn.ncols();
         let layout = Layout::new(self.free.clone(), self.length_m);
-        let packed = Packed::new(&self.model, readings, self.width());
+        let packed = PackedValues::new(&self.model, readings, self.width());
         let linkage = Linkage::new(&self.estimate);
         let (mut chain, mut twists) =
-            (Chain::default(), vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()]);
+            (RowChain::default(), vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()]);
         let targets = self.targets;
         let mut found = DMatrix::zeros(3 * packed.rows() * targets, layout.dim());
         for row in 0..packed.rows() {
@@ -350,7 +352,7 @@ fn one_of_each(data: &Dataset) -> Vec<u32> {
     rows
 }
 
-pub(crate) fn undetermined() -> poecal_numerics::error::Error {
+pub(crate) fn undetermined_error() -> poecal_numerics::error::Error {
     ErrorKind::Problem.error(
         "found configurations whose information cannot be inverted, expected finite sizes of joints, noise and tolerances: check the units of the model",
     )

@@ -4,18 +4,18 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::blocks::Blocks;
+use super::blocks::ConfigurationRows;
 use super::candidates::{draw, draw_measurable, keep_measurable, thin_out};
 use super::change::MOST_NUMBERS;
-use super::conditions::{Checker, Refusals};
-use super::expected::{ExpectedErrors, enough};
-use super::experiment::{Experiment, WORKSPACE, undetermined};
+use super::conditions::{Checker, RefusalCounts};
+use super::error_curve::{ExpectedErrors, sufficient_count};
+use super::experiment::{PlannedExperiment, WORKSPACE, undetermined_error};
 use super::options::{PlanCriterion, PlanOptions};
-use super::order::Travel;
-use super::planned::Plan;
-use super::rows::{PlannedRow, RowPart};
-use super::search::Search;
-use super::state::{Aim, Squares, Weights};
+use super::order::TravelDistance;
+use super::plan_result::Plan;
+use super::rows::{PlannedRow, RowPurpose};
+use super::search::PlanSearch;
+use super::state::{CriterionContext, CriterionWeights, WorkspaceErrors};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::random;
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -35,33 +35,34 @@ pub fn plan(robot: &Robot, options: &PlanOptions) -> Result<Plan> {
 /// A session to be planned, with candidates.
 pub(crate) struct Planner<'a> {
     pub(crate) options: &'a PlanOptions,
-    pub(crate) experiment: Experiment,
+    pub(crate) experiment: PlannedExperiment,
     pub(crate) candidates: Vec<f64>,
     /// Index of each candidate in the list.
     pub(crate) origins: Option<Vec<usize>>,
-    pub(crate) refusals: Refusals,
+    pub(crate) refusals: RefusalCounts,
     pub(crate) left_out: Vec<(String, String)>,
     pub(crate) without_limits: Vec<String>,
-    pub(crate) blocks: Blocks,
+    pub(crate) blocks: ConfigurationRows,
     pub(crate) kept: DMatrix<f64>,
     pub(crate) kept_count: usize,
     pub(crate) avoided: Vec<f64>,
     pub(crate) workspace: Vec<f64>,
-    pub(crate) aim: Aim,
-    pub(crate) random: Squares,
+    pub(crate) aim: CriterionContext,
+    pub(crate) random: WorkspaceErrors,
     pub(crate) generator: ChaCha8Rng,
 }
 
 impl<'a> Planner<'a> {
     fn new(robot: &Robot, options: &'a PlanOptions) -> Result<Self> {
-        let experiment = Experiment::new(robot, &options.fit)?;
+        let experiment = PlannedExperiment::new(robot, &options.fit)?;
         refuse_many_numbers(&experiment)?;
         let width = experiment.width();
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let planned = experiment.robot.clone();
-        let (avoided, stay) = (options.avoided(), options.fitted());
-        let checker = Checker::new(&planned, &options.conditions).avoiding(&avoided, experiment.length_m());
-        let mut refusals = Refusals::default();
+        let (avoided, stay) = (options.avoided_readings(), options.fitted_readings());
+        let checker =
+            Checker::new(&planned, &options.conditions).with_avoided(&avoided, experiment.length_m());
+        let mut refusals = RefusalCounts::default();
         let (candidates, origins) = match &options.list {
             Some(list) => keep_measurable(&checker, (list, width), &options.conditions, &mut refusals),
             None => {
@@ -76,7 +77,7 @@ impl<'a> Planner<'a> {
             }),
         };
         let count = candidates.len() / width;
-        let new = options.new_of(RowPart::Fit, stay.len() / width);
+        let new = options.new_of(RowPurpose::Fit, stay.len() / width);
         if count < new || workspace.is_empty() {
             return Err(too_few(count, new, &refusals));
         }
@@ -89,7 +90,7 @@ impl<'a> Planner<'a> {
         let new = new.min(blocks.count());
         let random = random_lists(&aim, &kept, &blocks, (new, options.seed))?;
         if has_terms {
-            aim.weights.calibrated = 1.0 / random.calibrated();
+            aim.weights.calibrated = 1.0 / random.calibrated_error();
             aim.weights.corrected = 1.0 / random.corrected;
         }
         Ok(Planner {
@@ -112,12 +113,12 @@ impl<'a> Planner<'a> {
     }
 
     fn plan(mut self) -> Result<Plan> {
-        let new = self.options.new_of(RowPart::Fit, self.kept_count);
-        let chosen = self.chosen(new);
+        let new = self.options.new_of(RowPurpose::Fit, self.kept_count);
+        let chosen = self.choose(new);
         let width = self.experiment.width();
         let mut readings: Vec<Vec<f64>> =
             chosen.iter().map(|&at| self.candidates[at * width..(at + 1) * width].to_vec()).collect();
-        let mut rows = self.blocks.only(&chosen);
+        let mut rows = self.blocks.select(&chosen);
         let origins: Vec<Option<usize>> =
             chosen.iter().map(|&at| self.origins.as_ref().and_then(|it| it.get(at)).copied()).collect();
         if self.options.list.is_none() && self.options.criterion == PlanCriterion::Expected {
@@ -126,9 +127,9 @@ impl<'a> Planner<'a> {
         let (squares, log_determinant) = self.squares(&rows)?;
         let expected = ExpectedErrors::new(&self.experiment, &squares);
         let curve = if self.options.with_curve { self.curve(new, &squares)? } else { Vec::new() };
-        let enough = enough(&curve);
+        let enough = sufficient_count(&curve);
         let rows = self.rows(readings, &origins);
-        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
+        let travel = TravelDistance::new(&self.experiment.robot, self.experiment.length_m());
         let way = |pair: &[PlannedRow]| travel.distance(&pair[0].readings, &pair[1].readings);
         Ok(Plan {
             travel_rad: rows.windows(2).map(way).sum(),
@@ -153,17 +154,17 @@ impl<'a> Planner<'a> {
     }
 
     /// Expected squared errors of rows added to the kept ones, and the logarithm of the determinant of geometry's information.
-    fn squares(&self, rows: &Blocks) -> Result<(Squares, f64)> {
+    fn squares(&self, rows: &ConfigurationRows) -> Result<(WorkspaceErrors, f64)> {
         let mut aim = self.aim.clone();
         aim.weights.determinant = 1.0;
         let gram = &self.kept + rows.gram(0..rows.count());
-        let found = super::state::State::new(&aim, &gram).map(|(_, squares)| squares);
-        found.map(|squares| (squares, squares.determinant)).ok_or_else(undetermined)
+        let found = super::state::CovarianceState::new(&aim, &gram).map(|(_, squares)| squares);
+        found.map(|squares| (squares, squares.determinant)).ok_or_else(undetermined_error)
     }
 }
 
 /// Refuses configurations with more measured components than the updates of a plan allow.
-fn refuse_many_numbers(experiment: &Experiment) -> Result<()> {
+fn refuse_many_numbers(experiment: &PlannedExperiment) -> Result<()> {
     if experiment.numbers > MOST_NUMBERS {
         return ErrorKind::Option.refuse(format!(
             "found {} numbers that are measured in a configuration, expected at most {MOST_NUMBERS}: plan for fewer targets",
@@ -174,7 +175,11 @@ fn refuse_many_numbers(experiment: &Experiment) -> Result<()> {
 }
 
 /// The information of the rows that stay, and their number.
-fn kept_information(experiment: &Experiment, stay: &[f64], columns: usize) -> Result<(DMatrix<f64>, usize)> {
+fn kept_information(
+    experiment: &PlannedExperiment,
+    stay: &[f64],
+    columns: usize,
+) -> Result<(DMatrix<f64>, usize)> {
     if stay.is_empty() {
         return Ok((DMatrix::zeros(columns, columns), 0));
     }
@@ -183,13 +188,14 @@ fn kept_information(experiment: &Experiment, stay: &[f64], columns: usize) -> Re
 }
 
 /// The aim of a plan whose errors are not yet weighted against each other.
-fn aim_at(experiment: &Experiment, workspace: &[f64], has_terms: bool) -> Aim {
-    let weights = Weights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
-    Aim::new(&experiment.prior, experiment.moments(workspace), weights, experiment.share())
+fn aim_at(experiment: &PlannedExperiment, workspace: &[f64], has_terms: bool) -> CriterionContext {
+    let weights =
+        CriterionWeights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
+    CriterionContext::new(&experiment.prior, experiment.moments(workspace), weights, experiment.share())
 }
 
 /// The error of too few configurations for the plan.
-fn too_few(count: usize, new: usize, refusals: &Refusals) -> Error {
+fn too_few(count: usize, new: usize, refusals: &RefusalCounts) -> Error {
     let words = refusals.words();
     ErrorKind::Option.error(format!(
         "found {count} configurations that can be measured among {}{}{words}, expected at least the {new} of the plan: widen the conditions, or \
@@ -201,26 +207,26 @@ fn too_few(count: usize, new: usize, refusals: &Refusals) -> Error {
 
 /// Median expected squared errors of random lists.
 fn random_lists(
-    aim: &Aim,
+    aim: &CriterionContext,
     kept: &DMatrix<f64>,
-    blocks: &Blocks,
+    blocks: &ConfigurationRows,
     (count, seed): (usize, u64),
-) -> Result<Squares> {
+) -> Result<WorkspaceErrors> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(1);
     let mut order: Vec<usize> = (0..blocks.count()).collect();
-    let search = Search { aim, kept, blocks, apart: &|_, _| true };
+    let search = PlanSearch { aim, kept, blocks, apart: &|_, _| true };
     let mut found = Vec::new();
     for _ in 0..RANDOM {
         random::shuffle(&mut generator, &mut order);
-        found.push(search.squares(&order[..count]).ok_or_else(undetermined)?);
+        found.push(search.squares(&order[..count]).ok_or_else(undetermined_error)?);
     }
-    let median = |of: fn(&Squares) -> f64| {
+    let median = |of: fn(&WorkspaceErrors) -> f64| {
         let mut values: Vec<f64> = found.iter().map(of).collect();
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
     };
-    Ok(Squares {
+    Ok(WorkspaceErrors {
         noise: median(|it| it.noise),
         true_noise: median(|it| it.true_noise),
         terms: median(|it| it.terms),

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::conditions::Conditions;
-use super::rows::{PlannedRow, RowPart};
+use super::rows::{PlannedRow, RowPurpose};
 use poecal_fit::analysis::PlannedSession;
 use poecal_model::robot::{Corrections, Tolerance};
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 
 /// Default position of the first of several targets, metres.
 const NEST_M: [f64; 3] = [0.05, 0.0, 0.0];
@@ -43,7 +43,7 @@ impl Default for PlannedFit {
     /// Points with 0.05 mm in 30 configurations.
     fn default() -> Self {
         PlannedFit {
-            session: PlannedSession { kind: Kind::POINT, ..PlannedSession::default() },
+            session: PlannedSession { kind: SessionKind::POINT, ..PlannedSession::default() },
             count: 30,
             tolerance: Some(Tolerance::default()),
             corrections: Corrections::Auto,
@@ -62,7 +62,7 @@ impl Default for PlannedFit {
 /// use poecal_model::simulate::elbow;
 /// let options = PlanOptions { fit: PlannedFit { count: 12, ..Default::default() }, candidates: 200, ..Default::default() };
 /// let found = plan(&elbow(), &options)?;
-/// assert_eq!(found.rows.iter().filter(|row| !row.returns && row.part == poecal_plan::plan::RowPart::Fit).count(), 12);
+/// assert_eq!(found.rows.iter().filter(|row| !row.returns && row.part == poecal_plan::plan::RowPurpose::Fit).count(), 12);
 /// assert!(found.expected.calibrated_m() < found.random.calibrated_m());
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
@@ -113,10 +113,12 @@ impl Default for PlanOptions {
 impl PlanOptions {
     /// Readings of the kept configurations to fit that stay, one after the other.
     #[must_use]
-    pub fn fitted(&self) -> Vec<f64> {
+    pub fn fitted_readings(&self) -> Vec<f64> {
         let replaced = self.replaced_rows();
         let stays = |row: &&PlannedRow| {
-            row.part == RowPart::Fit && !row.returns && replaced.iter().all(|it| it.readings != row.readings)
+            row.part == RowPurpose::Fit
+                && !row.returns
+                && replaced.iter().all(|it| it.readings != row.readings)
         };
         self.kept.iter().filter(stays).flat_map(|row| row.readings.clone()).collect()
     }
@@ -134,16 +136,16 @@ impl PlanOptions {
     }
 
     /// Readings of the rows that are replaced, one after the other.
-    pub(crate) fn avoided(&self) -> Vec<f64> {
+    pub(crate) fn avoided_readings(&self) -> Vec<f64> {
         self.replaced_rows().into_iter().flat_map(|row| row.readings.clone()).collect()
     }
 
     /// Number of new configurations of a part: those that complete the kept ones, or those that replace rows.
-    pub(crate) fn new_of(&self, part: RowPart, kept: usize) -> usize {
+    pub(crate) fn new_of(&self, part: RowPurpose, kept: usize) -> usize {
         if self.replaced.is_empty() {
             return match part {
-                RowPart::Fit => self.fit.count.saturating_sub(kept),
-                RowPart::Judge => self.judge.unwrap_or(self.fit.count.div_ceil(3)),
+                RowPurpose::Fit => self.fit.count.saturating_sub(kept),
+                RowPurpose::Judge => self.judge.unwrap_or(self.fit.count.div_ceil(3)),
             };
         }
         self.replaced_rows().iter().filter(|row| row.part == part).count()

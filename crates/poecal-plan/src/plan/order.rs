@@ -6,18 +6,18 @@ use poecal_model::robot::{ReadingKind, Robot};
 const SWEEPS: usize = 20;
 
 /// Distance between configurations: the largest change of a joint, radians; for a sliding joint over the length that a radian counts.
-pub(crate) struct Travel {
+pub(crate) struct TravelDistance {
     scales: Vec<f64>,
 }
 
-impl Travel {
+impl TravelDistance {
     pub(crate) fn new(robot: &Robot, length_m: f64) -> Self {
         let scale = |name: &String| match robot.reading_kind(name) {
             ReadingKind::Angle => 1.0,
             ReadingKind::Length => 1.0 / length_m,
             ReadingKind::Factor => 0.0,
         };
-        Travel { scales: robot.reading_names().iter().map(scale).collect() }
+        TravelDistance { scales: robot.reading_names().iter().map(scale).collect() }
     }
 
     pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
@@ -29,7 +29,7 @@ impl Travel {
     }
 
     /// An order of configurations with a short path from `start` on: from each to the nearest, then shortened by reversing parts of it.
-    pub(crate) fn ordered(&self, start: &[f64], rows: &[&[f64]]) -> Vec<usize> {
+    pub(crate) fn shortest_order(&self, start: &[f64], rows: &[&[f64]]) -> Vec<usize> {
         let mut left: Vec<usize> = (0..rows.len()).collect();
         let (mut order, mut at) = (Vec::new(), start);
         while !left.is_empty() {

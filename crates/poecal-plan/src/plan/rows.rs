@@ -5,20 +5,20 @@ pub const RETURN_EVERY: usize = 20;
 
 /// Purpose of a planned row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowPart {
+pub enum RowPurpose {
     /// The row is fitted.
     Fit,
     /// The row is held out, to judge the fit.
     Judge,
 }
 
-impl RowPart {
+impl RowPurpose {
     /// Word in the column `set`.
     #[must_use]
     pub fn set(self) -> &'static str {
         match self {
-            RowPart::Fit => "fit",
-            RowPart::Judge => "held_out",
+            RowPurpose::Fit => "fit",
+            RowPurpose::Judge => "held_out",
         }
     }
 }
@@ -29,7 +29,7 @@ pub struct PlannedRow {
     /// Readings in the order of [`Robot::reading_names`](poecal_model::robot::Robot::reading_names), radians and metres.
     pub readings: Vec<f64>,
     /// Purpose of the row.
-    pub part: RowPart,
+    pub part: RowPurpose,
     /// True if it is the first configuration again.
     pub returns: bool,
     /// Index of the candidate of the list from which it was chosen.
@@ -39,7 +39,7 @@ pub struct PlannedRow {
 impl PlannedRow {
     /// Rows of a list by their readings, one after the other, and by their purposes; rows with the readings of an earlier one return to it.
     #[must_use]
-    pub fn of_list(readings: &[f64], width: usize, parts: &[RowPart]) -> Vec<PlannedRow> {
+    pub fn of_list(readings: &[f64], width: usize, parts: &[RowPurpose]) -> Vec<PlannedRow> {
         let mut rows: Vec<PlannedRow> = Vec::new();
         for (own, &part) in readings.chunks_exact(width.max(1)).zip(parts) {
             let returns = rows.iter().any(|row| row.readings == own);

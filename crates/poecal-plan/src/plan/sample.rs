@@ -2,18 +2,18 @@
 
 use nalgebra::DMatrix;
 
-use super::experiment::{Experiment, SAMPLE, inverse};
+use super::experiment::{PlannedExperiment, SAMPLE, inverse};
 use super::options::{PlannedFit, RobotError};
 use poecal_calibrate::free_parameters;
 use poecal_fit::analysis::predicted_data;
 use poecal_fit::parameters::screw_axes;
 use poecal_fit::problem::{Layout, MOST_UNKNOWNS, Prior, TermPrior};
-use poecal_fit::state::{Estimate, Packed, Session, delivered};
+use poecal_fit::state::{Estimate, PackedValues, Session, nominal_estimate};
 use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
 use poecal_model::robot::{CorrectionModel, Tolerance};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::linalg;
-use poecal_numerics::solve::Normal;
+use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::unit::Unit;
 
 /// Largest number of stations from which one configuration is measured.
@@ -30,14 +30,14 @@ const LEAST_REST: f64 = 0.16;
 const LEAST_TERMS: f64 = 0.2;
 
 /// Indices of the unknowns in a step: of geometry, and of terms with their scales and prior standard deviations.
-struct Places {
+struct StepIndices {
     geometry: Vec<usize>,
     terms: Vec<usize>,
     scales: Vec<f64>,
     priors: Vec<TermPrior>,
 }
 
-impl Experiment {
+impl PlannedExperiment {
     /// Layout, prior, robot error and modes, from a sample of configurations.
     pub(crate) fn settle(
         &mut self,
@@ -59,11 +59,11 @@ impl Experiment {
         }
         self.numbers =
             data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
-        let packed = Packed::from_dataset(&self.model, &data);
+        let packed = PackedValues::from_dataset(&self.model, &data);
         let rows = data.all_rows();
         let mut estimate = match begun {
             Some((_, registered)) => self.with_gives(registered, &data),
-            None => delivered(&self.model, &data),
+            None => nominal_estimate(&self.model, &data),
         };
         for (station, device) in devices.into_iter().enumerate() {
             *estimate.device_mut(station) = device;
@@ -76,7 +76,7 @@ impl Experiment {
         let free = match begun {
             // Device frames turn about the middle of the measured points.
             Some((data, _)) => {
-                let packed = Packed::from_dataset(&self.model, data);
+                let packed = PackedValues::from_dataset(&self.model, data);
                 free_parameters(&self.session_of(data, &packed), &self.estimate, &data.all_rows(), joints)
             }
             None => free_parameters(&session, &self.estimate, &rows, joints),
@@ -88,7 +88,7 @@ impl Experiment {
                 layout.dim()
             ));
         }
-        let Places { geometry, terms, scales, priors } = sort_places(&layout, deviations, corrected);
+        let StepIndices { geometry, terms, scales, priors } = sort_places(&layout, deviations, corrected);
         let tolerance = fit.tolerance.unwrap_or(Tolerance::WIDE);
         let prior = self.prior_information(&session, tolerance, &layout, &geometry);
         (self.prior, self.geometry, self.terms) = (prior, geometry, terms);
@@ -118,7 +118,7 @@ impl Experiment {
         geometry: &[usize],
     ) -> DMatrix<f64> {
         let n = layout.dim();
-        let mut prior = Normal::new(n);
+        let mut prior = NormalEquations::new(n);
         Prior::from_session(session, tolerance).without_terms().add(&self.estimate, layout, 1.0, &mut prior);
         let own = |i: usize, j: usize| {
             let (a, b) = (geometry[i], geometry[j]);
@@ -194,7 +194,7 @@ impl Experiment {
 }
 
 /// Sorts the indices of a layout into those of geometry and of terms.
-fn sort_places(layout: &Layout, deviations: &[f64], corrected: &CorrectionModel) -> Places {
+fn sort_places(layout: &Layout, deviations: &[f64], corrected: &CorrectionModel) -> StepIndices {
     let (mut geometry, mut terms, mut scales) = (Vec::new(), Vec::new(), Vec::new());
     let mut priors = Vec::new();
     let known: Vec<(usize, poecal_model::robot::Term)> = corrected.terms().collect();
@@ -212,5 +212,5 @@ fn sort_places(layout: &Layout, deviations: &[f64], corrected: &CorrectionModel)
         }
     }
     geometry.sort_unstable();
-    Places { geometry, terms, scales, priors }
+    StepIndices { geometry, terms, scales, priors }
 }

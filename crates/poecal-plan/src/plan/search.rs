@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::blocks::Blocks;
+use super::blocks::ConfigurationRows;
 use super::caches::Caches;
-use super::state::{Aim, Squares, State};
+use super::state::{CovarianceState, CriterionContext, WorkspaceErrors};
 use poecal_model::simulate::random;
 
 /// Information of a greedy choice beside the prior: that of this number of average rows.
@@ -28,16 +28,16 @@ const STARTS: usize = 8;
 const NO_GAIN: f64 = 1e-5;
 
 /// Search for rows of candidates in addition to existing rows.
-pub(crate) struct Search<'a> {
-    pub(crate) aim: &'a Aim,
+pub(crate) struct PlanSearch<'a> {
+    pub(crate) aim: &'a CriterionContext,
     /// Information of existing rows.
     pub(crate) kept: &'a DMatrix<f64>,
-    pub(crate) blocks: &'a Blocks,
+    pub(crate) blocks: &'a ConfigurationRows,
     /// True if two candidates may be in one list.
     pub(crate) apart: &'a (dyn Fn(usize, usize) -> bool + Sync),
 }
 
-impl Search<'_> {
+impl PlanSearch<'_> {
     /// Candidates that gain most, one after the other, after those chosen already.
     pub(crate) fn greedy(&self, mut chosen: Vec<usize>, count: usize) -> Vec<usize> {
         let blocks = self.blocks;
@@ -45,17 +45,21 @@ impl Search<'_> {
         let some: Vec<usize> = (0..blocks.count()).step_by(every).collect();
         let average = blocks.gram(some.iter().copied()) / some.len().max(1) as f64;
         let gram = self.kept + average * SOFT + blocks.gram(chosen.iter().copied());
-        let Some((mut state, _)) = State::new(self.aim, &gram) else { return chosen };
+        let Some((mut state, _)) = CovarianceState::new(self.aim, &gram) else { return chosen };
         let mut caches = Caches::new(&state, self.aim, blocks);
         let mut open: Vec<bool> = (0..blocks.count()).map(|at| self.is_open(at, &chosen)).collect();
         while chosen.len() < count {
-            let Some((best, _)) = self.best(&caches, |at| open[at]) else { break };
+            let Some((best, _)) = self.best_candidate(&caches, |at| open[at]) else { break };
             chosen.push(best);
             (0..open.len()).for_each(|at| open[at] = open[at] && at != best && (self.apart)(at, best));
             if chosen.len() == count {
                 break;
             }
-            let Some(change) = state.change(self.aim, blocks.rows_of_configuration(best), blocks.numbers, 1.0) else { break };
+            let Some(change) =
+                state.change(self.aim, blocks.rows_of_configuration(best), blocks.numbers, 1.0)
+            else {
+                break;
+            };
             state.apply(&change, blocks.numbers);
             caches.apply(self.aim, blocks, &change);
         }
@@ -69,9 +73,9 @@ impl Search<'_> {
         }
         let every = (self.blocks.count() / SOME.max(count * FEWEST_EACH)).max(1);
         let some: Vec<usize> = (0..self.blocks.count()).step_by(every).collect();
-        let blocks = self.blocks.only(&some);
+        let blocks = self.blocks.select(&some);
         let apart = |a: usize, b: usize| (self.apart)(some[a], some[b]);
-        let found = Search { blocks: &blocks, apart: &apart, ..*self }.greedy(Vec::new(), count);
+        let found = PlanSearch { blocks: &blocks, apart: &apart, ..*self }.greedy(Vec::new(), count);
         found.into_iter().map(|at| some[at]).collect()
     }
 
@@ -113,7 +117,7 @@ impl Search<'_> {
     }
 
     /// The candidate that gains most.
-    fn best(&self, caches: &Caches, is_open: impl Fn(usize) -> bool) -> Option<(usize, f64)> {
+    fn best_candidate(&self, caches: &Caches, is_open: impl Fn(usize) -> bool) -> Option<(usize, f64)> {
         let weights = &self.aim.weights;
         let gains = (0..caches.count()).filter(|&at| is_open(at)).map(|at| (at, caches.gain(at, weights)));
         gains.fold(None, |best, (at, gain)| match best {
@@ -146,7 +150,7 @@ impl Search<'_> {
             return (0..count).collect();
         }
         let gram = self.kept + self.blocks.gram(chosen.iter().copied());
-        let Some((state, _)) = State::new(self.aim, &gram) else { return chosen.to_vec() };
+        let Some((state, _)) = CovarianceState::new(self.aim, &gram) else { return chosen.to_vec() };
         let caches = Caches::new(&state, self.aim, self.blocks);
         let mut ranked: Vec<(f64, usize)> =
             (0..count).map(|at| (caches.gain(at, &self.aim.weights), at)).collect();
@@ -160,24 +164,26 @@ impl Search<'_> {
 
     fn exchange_among(&self, mut chosen: Vec<usize>, fixed: usize, active: &[usize]) -> Vec<usize> {
         let (aim, m) = (self.aim, self.blocks.numbers);
-        let blocks = &self.blocks.only(active);
+        let blocks = &self.blocks.select(active);
         let place = |index: usize| active.binary_search(&index).ok();
         let is_few = active.len() == self.blocks.count();
         for _ in 0..if is_few { PASSES_OF_FEW } else { PASSES } {
             let gram = self.kept + self.blocks.gram(chosen.iter().copied());
-            let Some((mut state, before)) = State::new(aim, &gram) else { break };
+            let Some((mut state, before)) = CovarianceState::new(aim, &gram) else { break };
             let mut caches = Caches::new(&state, aim, blocks);
             let before = before.value(&aim.weights);
             let unchanged = chosen.clone();
             for position in fixed..chosen.len() {
                 let own = chosen[position];
-                let Some(without) = state.change(aim, self.blocks.rows_of_configuration(own), m, -1.0) else { continue };
+                let Some(without) = state.change(aim, self.blocks.rows_of_configuration(own), m, -1.0) else {
+                    continue;
+                };
                 state.apply(&without, m);
                 caches.apply(aim, blocks, &without);
                 chosen.swap_remove(position);
                 let others = &chosen;
                 let open = |at: usize| self.is_open(active[at], others);
-                let best = self.best(&caches, open).map(|(at, gain)| (active[at], gain));
+                let best = self.best_candidate(&caches, open).map(|(at, gain)| (active[at], gain));
                 let kept = place(own).map_or(0.0, |at| caches.gain(at, &aim.weights));
                 let next = match best {
                     Some((at, gain)) if gain > kept + NO_GAIN * before.abs() => at,
@@ -187,7 +193,9 @@ impl Search<'_> {
                 chosen.push(next);
                 let last = chosen.len() - 1;
                 chosen.swap(position, last);
-                let Some(with) = state.change(aim, self.blocks.rows_of_configuration(next), m, 1.0) else { return unchanged };
+                let Some(with) = state.change(aim, self.blocks.rows_of_configuration(next), m, 1.0) else {
+                    return unchanged;
+                };
                 state.apply(&with, m);
                 caches.apply(aim, blocks, &with);
             }
@@ -206,26 +214,26 @@ impl Search<'_> {
     }
 
     /// Expected squared errors with rows of these candidates.
-    pub(crate) fn squares(&self, chosen: &[usize]) -> Option<Squares> {
+    pub(crate) fn squares(&self, chosen: &[usize]) -> Option<WorkspaceErrors> {
         let gram = self.kept + self.blocks.gram(chosen.iter().copied());
-        State::new(self.aim, &gram).map(|(_, squares)| squares)
+        CovarianceState::new(self.aim, &gram).map(|(_, squares)| squares)
     }
 }
 
 /// Replaces rows of a list by others nearby, round after round. For each row `near` proposes rows; the best is taken if it gains. `rows` are replaced
 /// together with their configurations, by `take(row, proposal)`, unless it refuses.
-pub(crate) fn around(
-    aim: &Aim,
+pub(crate) fn improve_nearby(
+    aim: &CriterionContext,
     kept: &DMatrix<f64>,
-    rows: &mut Blocks,
-    proposals: &Blocks,
+    rows: &mut ConfigurationRows,
+    proposals: &ConfigurationRows,
     owners: &[usize],
     mut take: impl FnMut(usize, usize) -> bool,
 ) {
     let m = rows.numbers;
     let size = m * rows.columns;
     let gram = kept + rows.gram(0..rows.count());
-    let Some((mut state, value)) = State::new(aim, &gram) else { return };
+    let Some((mut state, value)) = CovarianceState::new(aim, &gram) else { return };
     let least = NO_GAIN * value.value(&aim.weights).abs() / rows.count().max(1) as f64;
     for row in 0..rows.count() {
         let own: Vec<usize> = (0..owners.len()).filter(|&at| owners[at] == row).collect();
@@ -234,7 +242,7 @@ pub(crate) fn around(
         }
         let Some(without) = state.change(aim, rows.rows_of_configuration(row), m, -1.0) else { continue };
         state.apply(&without, m);
-        let mut candidates = proposals.only(&own);
+        let mut candidates = proposals.select(&own);
         candidates.values.extend_from_slice(rows.rows_of_configuration(row));
         let caches = Caches::new(&state, aim, &candidates);
         let kept = caches.gain(own.len(), &aim.weights);
@@ -260,18 +268,18 @@ pub(crate) fn around(
 mod tests {
     use super::*;
     use crate::plan::PlannedFit;
-    use crate::plan::experiment::Experiment;
-    use crate::plan::state::Weights;
+    use crate::plan::experiment::PlannedExperiment;
+    use crate::plan::state::CriterionWeights;
     use poecal_model::simulate::{elbow, random_configuration};
 
-    fn setup(fit: &PlannedFit) -> (Experiment, Aim, Blocks, Vec<f64>) {
-        let experiment = Experiment::new(&elbow(), fit).unwrap();
+    fn setup(fit: &PlannedFit) -> (PlannedExperiment, CriterionContext, ConfigurationRows, Vec<f64>) {
+        let experiment = PlannedExperiment::new(&elbow(), fit).unwrap();
         let mut generator = ChaCha8Rng::seed_from_u64(5);
         let readings: Vec<f64> =
             (0..120).flat_map(|_| random_configuration(&elbow(), &mut generator)).collect();
         let moments = experiment.moments(&readings);
-        let weights = Weights { calibrated: 1.0, corrected: 2.0, determinant: 1e-9 };
-        let aim = Aim::new(&experiment.prior, moments, weights, experiment.share());
+        let weights = CriterionWeights { calibrated: 1.0, corrected: 2.0, determinant: 1e-9 };
+        let aim = CriterionContext::new(&experiment.prior, moments, weights, experiment.share());
         let blocks = experiment.blocks(&readings).unwrap();
         (experiment, aim, blocks, readings)
     }
@@ -279,13 +287,13 @@ mod tests {
     /// The low-rank updates compared with new inverses: gains of all candidates, after added and removed rows.
     #[test]
     fn gains_are_differences_of_the_criterion() {
-        for kind in [poecal_model::simulate::Kind::POINT, poecal_model::simulate::Kind::POSE] {
+        for kind in [poecal_model::simulate::SessionKind::POINT, poecal_model::simulate::SessionKind::POSE] {
             let fit = PlannedFit::default();
             let session = poecal_fit::analysis::PlannedSession { kind, ..fit.session };
             let (_, aim, blocks, _) = setup(&PlannedFit { session, ..fit });
             let m = blocks.numbers;
             let gram = blocks.gram(0..30);
-            let (mut state, _) = State::new(&aim, &gram).unwrap();
+            let (mut state, _) = CovarianceState::new(&aim, &gram).unwrap();
             let mut caches = Caches::new(&state, &aim, &blocks);
             for (row, sign) in [(40, 1.0), (3, -1.0), (41, 1.0), (40, -1.0)] {
                 let change = state.change(&aim, blocks.rows_of_configuration(row), m, sign).unwrap();
@@ -294,7 +302,7 @@ mod tests {
             }
             let now: Vec<usize> = (0..30).filter(|&row| row != 3).chain([41]).collect();
             let value = |rows: &[usize]| {
-                State::new(&aim, &blocks.gram(rows.iter().copied())).unwrap().1.value(&aim.weights)
+                CovarianceState::new(&aim, &blocks.gram(rows.iter().copied())).unwrap().1.value(&aim.weights)
             };
             let before = value(&now);
             let mut worst: f64 = 0.0;
@@ -326,7 +334,7 @@ mod tests {
     fn planned_lists_are_better_than_random_ones() {
         let (_, aim, blocks, _) = setup(&PlannedFit::default());
         let kept = DMatrix::zeros(blocks.columns, blocks.columns);
-        let search = Search { aim: &aim, kept: &kept, blocks: &blocks, apart: &|_, _| true };
+        let search = PlanSearch { aim: &aim, kept: &kept, blocks: &blocks, apart: &|_, _| true };
         let value = |rows: &[usize]| search.squares(rows).unwrap().value(&aim.weights);
         let greedy = search.greedy(Vec::new(), 24);
         let found = search.exchange(greedy.clone(), 0);
@@ -355,7 +363,7 @@ mod tests {
     #[test]
     fn twenty_rows_are_near_the_bound_by_approximate_design() {
         const ROWS: usize = 20;
-        for kind in [poecal_model::simulate::Kind::POINT, poecal_model::simulate::Kind::POSE] {
+        for kind in [poecal_model::simulate::SessionKind::POINT, poecal_model::simulate::SessionKind::POSE] {
             let fit = PlannedFit::default();
             let session = poecal_fit::analysis::PlannedSession { kind, ..fit.session };
             let corrections = poecal_model::robot::Corrections::Off;
@@ -366,7 +374,7 @@ mod tests {
                 ..fit
             };
             let (experiment, mut aim, blocks, _) = setup(&fit);
-            aim.weights = Weights { calibrated: 1.0, corrected: 0.0, determinant: 0.0 };
+            aim.weights = CriterionWeights { calibrated: 1.0, corrected: 0.0, determinant: 0.0 };
             let count = blocks.count();
             let each: Vec<DMatrix<f64>> = (0..count).map(|at| blocks.gram([at])).collect();
             let mut shares = vec![1.0 / count as f64; count];
@@ -387,7 +395,7 @@ mod tests {
                 shares.iter_mut().for_each(|share| *share /= sum);
             }
             let kept = DMatrix::zeros(blocks.columns, blocks.columns);
-            let search = Search { aim: &aim, kept: &kept, blocks: &blocks, apart: &|_, _| true };
+            let search = PlanSearch { aim: &aim, kept: &kept, blocks: &blocks, apart: &|_, _| true };
             let found = search.list(ROWS, 1);
             let own = search.squares(&found).unwrap().noise;
             let [own, value, bound] = [own, value, bound].map(|it: f64| 1e3 * it.sqrt());
@@ -406,9 +414,9 @@ mod tests {
             ..PlannedFit::default()
         };
         let (experiment, mut aim, blocks, _) = setup(&fit);
-        aim.weights = Weights { calibrated: 0.0, corrected: 0.0, determinant: 1.0 };
+        aim.weights = CriterionWeights { calibrated: 0.0, corrected: 0.0, determinant: 1.0 };
         let kept = DMatrix::zeros(blocks.columns, blocks.columns);
-        let search = Search { aim: &aim, kept: &kept, blocks: &blocks, apart: &|_, _| true };
+        let search = PlanSearch { aim: &aim, kept: &kept, blocks: &blocks, apart: &|_, _| true };
         let determinant = |rows: &[usize]| search.squares(rows).unwrap().determinant;
         let own = determinant(&search.list(20, 1));
         let mut generator = ChaCha8Rng::seed_from_u64(8);

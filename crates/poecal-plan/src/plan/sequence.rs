@@ -2,23 +2,23 @@
 
 use super::conditions::{Checker, Obstacle};
 use super::make::Planner;
-use super::order::Travel;
-use super::rows::{PlannedRow, RowPart, with_returns};
+use super::order::TravelDistance;
+use super::rows::{PlannedRow, RowPurpose, with_returns};
 use poecal_model::simulate::random;
 
 impl Planner<'_> {
     /// The rows in the order of measurement: those to fit by travel, then the judging ones, and the first one at intervals.
     pub(crate) fn rows(&mut self, readings: Vec<Vec<f64>>, origins: &[Option<usize>]) -> Vec<PlannedRow> {
-        let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
-        let judged = self.options.new_of(RowPart::Judge, 0);
+        let travel = TravelDistance::new(&self.experiment.robot, self.experiment.length_m());
+        let judged = self.options.new_of(RowPurpose::Judge, 0);
         let width = self.experiment.width();
         let mut left: Vec<usize> = (0..self.workspace.len() / width).collect();
         random::shuffle(&mut self.generator, &mut left);
         let checker = Checker::new(&self.experiment.robot, &self.options.conditions)
-            .avoiding(&self.avoided, self.experiment.length_m());
+            .with_avoided(&self.avoided, self.experiment.length_m());
         let stated = self.options.workspace.is_some();
         let can_be = |at: &&usize| {
-            let found = checker.measured(&self.workspace[**at * width..(**at + 1) * width]);
+            let found = checker.obstacle_to_measuring(&self.workspace[**at * width..(**at + 1) * width]);
             found.is_none_or(|it| stated && it == Obstacle::Limits)
         };
         let judges: Vec<Vec<f64>> = left
@@ -29,19 +29,20 @@ impl Planner<'_> {
             .collect();
         let mut rows: Vec<PlannedRow> = Vec::new();
         let home = vec![0.0; width];
-        for (part, all) in [(RowPart::Fit, &readings), (RowPart::Judge, &judges)] {
+        for (part, all) in [(RowPurpose::Fit, &readings), (RowPurpose::Judge, &judges)] {
             let start = rows.last().map_or(home.clone(), |row| row.readings.clone());
             let slices: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
-            for at in travel.ordered(&start, &slices) {
-                let candidate = if part == RowPart::Fit { origins.get(at).copied().flatten() } else { None };
+            for at in travel.shortest_order(&start, &slices) {
+                let candidate =
+                    if part == RowPurpose::Fit { origins.get(at).copied().flatten() } else { None };
                 rows.push(PlannedRow { readings: all[at].clone(), part, returns: false, candidate });
             }
         }
-        if self.options.replaced.is_empty() { with_returns(rows) } else { self.replaced(rows) }
+        if self.options.replaced.is_empty() { with_returns(rows) } else { self.replace_rows(rows) }
     }
 
     /// The kept rows in their order, with new ones in place of those that are replaced.
-    fn replaced(&self, mut new: Vec<PlannedRow>) -> Vec<PlannedRow> {
+    fn replace_rows(&self, mut new: Vec<PlannedRow>) -> Vec<PlannedRow> {
         let mut rows = self.options.kept.clone();
         for old in self.options.replaced_rows() {
             let Some(found) = new.iter().position(|it| it.part == old.part) else { continue };

@@ -2,13 +2,13 @@
 
 use nalgebra::DMatrix;
 
-use super::change::{Change, Part, add, dot, product};
+use super::change::{ChangedRows, PlanChange, add, dot, product};
 use super::experiment::inverse;
 
 /// Weights of the minimised criterion: of the expected squared errors of the calibrated and of the corrected model, and of the logarithm of the
 /// determinant of geometry's covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Weights {
+pub(crate) struct CriterionWeights {
     pub(crate) calibrated: f64,
     pub(crate) corrected: f64,
     pub(crate) determinant: f64,
@@ -16,21 +16,21 @@ pub(crate) struct Weights {
 
 /// Constants of the choice of configurations: priors, and moments of the workspace.
 #[derive(Clone, Debug)]
-pub(crate) struct Aim {
+pub(crate) struct CriterionContext {
     /// Number of unknowns of geometry; those after them are modes of unit prior.
     pub(crate) geometry: usize,
     /// Prior information of all unknowns.
     pub(crate) prior: DMatrix<f64>,
     /// Moments of the workspace.
     pub(crate) moments: DMatrix<f64>,
-    pub(crate) weights: Weights,
+    pub(crate) weights: CriterionWeights,
     /// Information of rows for the calibrated model, which treats undescribed errors as noise, as a share of that for the corrected one.
     pub(crate) share: f64,
 }
 
 /// Expected squared errors over the workspace, m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Squares {
+pub(crate) struct WorkspaceErrors {
     /// Error of the calibrated model by noise and prior, if all undescribed errors were noise.
     pub(crate) noise: f64,
     /// The same error with the true noise.
@@ -43,26 +43,31 @@ pub(crate) struct Squares {
     pub(crate) determinant: f64,
 }
 
-impl Squares {
+impl WorkspaceErrors {
     /// Minimised error of the calibrated model.
-    pub(crate) fn calibrated(&self) -> f64 {
+    pub(crate) fn calibrated_error(&self) -> f64 {
         self.noise + self.terms
     }
 
     /// Minimised criterion.
-    pub(crate) fn value(&self, weights: &Weights) -> f64 {
-        weights.calibrated * self.calibrated() + weights.corrected * self.corrected
+    pub(crate) fn value(&self, weights: &CriterionWeights) -> f64 {
+        weights.calibrated * self.calibrated_error() + weights.corrected * self.corrected
             - weights.determinant * self.determinant
     }
 }
 
-impl Aim {
+impl CriterionContext {
     /// Prior information with unit priors of modes.
-    pub(crate) fn new(prior: &DMatrix<f64>, moments: DMatrix<f64>, weights: Weights, share: f64) -> Self {
+    pub(crate) fn new(
+        prior: &DMatrix<f64>,
+        moments: DMatrix<f64>,
+        weights: CriterionWeights,
+        share: f64,
+    ) -> Self {
         let (g, n) = (prior.nrows(), moments.nrows());
         let mut all = DMatrix::identity(n, n);
         all.view_mut((0, 0), (g, g)).copy_from(prior);
-        Aim { geometry: g, prior: all, moments, weights, share }
+        CriterionContext { geometry: g, prior: all, moments, weights, share }
     }
 
     pub(crate) fn modes(&self) -> usize {
@@ -79,7 +84,7 @@ impl Aim {
 
 /// Covariances of a fit with some information, and further matrices of the criterion.
 #[derive(Clone, Debug)]
-pub(crate) struct State {
+pub(crate) struct CovarianceState {
     /// Covariance of all unknowns, and `H⁻¹ M H⁻¹`.
     pub(crate) all: [DMatrix<f64>; 2],
     /// The same of geometry alone.
@@ -88,9 +93,12 @@ pub(crate) struct State {
     pull: [DMatrix<f64>; 2],
 }
 
-impl State {
+impl CovarianceState {
     /// State by the information of measurements; `None` if it is not positive definite with the prior.
-    pub(crate) fn new(aim: &Aim, gram: &DMatrix<f64>) -> Option<(State, Squares)> {
+    pub(crate) fn new(
+        aim: &CriterionContext,
+        gram: &DMatrix<f64>,
+    ) -> Option<(CovarianceState, WorkspaceErrors)> {
         let (g, c) = (aim.geometry, aim.modes());
         let [mgg, mgc, mcc] = aim.parts();
         let prior = aim.prior.view((0, 0), (g, g));
@@ -106,7 +114,8 @@ impl State {
         // H⁻¹ (share² N + Λ) H⁻¹ with share N = H - Λ.
         let noise = spread.trace();
         let true_noise = aim.share * noise + (1.0 - aim.share) * p.dot(&prior);
-        let mut squares = Squares { noise, true_noise, terms: bias.max(0.0), corrected: 0.0, determinant };
+        let mut squares =
+            WorkspaceErrors { noise, true_noise, terms: bias.max(0.0), corrected: 0.0, determinant };
         let (all, q) = if aim.weights.corrected > 0.0 {
             let all = inverse(&(gram + &aim.prior))?;
             let spread = &aim.moments * &all;
@@ -116,17 +125,23 @@ impl State {
         } else {
             (DMatrix::zeros(0, 0), DMatrix::zeros(0, 0))
         };
-        Some((State { all: [all, q], own: [own, p], pull: [a, e] }, squares))
+        Some((CovarianceState { all: [all, q], own: [own, p], pull: [a, e] }, squares))
     }
 
     /// Change by adding (`sign` 1) or removing (-1) these rows; `None` if the rest would not be positive definite.
-    pub(crate) fn change(&self, aim: &Aim, rows: &[f64], numbers: usize, sign: f64) -> Option<Change> {
+    pub(crate) fn change(
+        &self,
+        aim: &CriterionContext,
+        rows: &[f64],
+        numbers: usize,
+        sign: f64,
+    ) -> Option<PlanChange> {
         let (g, c) = (aim.geometry, aim.modes());
         let n = g + c;
-        let scaled = scaled(rows, aim);
-        let own = Part::new(&self.own, &scaled, (numbers, n, g), sign)?;
+        let scaled = scale_rows(rows, aim);
+        let own = ChangedRows::new(&self.own, &scaled, (numbers, n, g), sign)?;
         let all = if self.all[0].nrows() > 0 {
-            Some(Part::new(&self.all, rows, (numbers, n, n), sign)?)
+            Some(ChangedRows::new(&self.all, rows, (numbers, n, n), sign)?)
         } else {
             None
         };
@@ -144,11 +159,11 @@ impl State {
                 add(&mut turned[i * c..(i + 1) * c], wtw[i * m + j], &r[j * c..(j + 1) * c]);
             }
         }
-        Some(Change { own, all, pulled, turned })
+        Some(PlanChange { own, all, pulled, turned })
     }
 
     /// The state after a change.
-    pub(crate) fn apply(&mut self, change: &Change, numbers: usize) {
+    pub(crate) fn apply(&mut self, change: &PlanChange, numbers: usize) {
         change.own.apply(&mut self.own, numbers);
         if let Some(all) = &change.all {
             all.apply(&mut self.all, numbers);
@@ -177,14 +192,21 @@ fn log_determinant(matrix: &DMatrix<f64>) -> Option<f64> {
 }
 
 /// Rows with the weight of the calibrated model.
-pub(crate) fn scaled(rows: &[f64], aim: &Aim) -> Vec<f64> {
+pub(crate) fn scale_rows(rows: &[f64], aim: &CriterionContext) -> Vec<f64> {
     let root = aim.share.sqrt();
     rows.iter().map(|value| value * root).collect()
 }
 
 /// `R = J_c - J_g A` and `Z = J_g E` of rows.
 #[inline(always)]
-pub(crate) fn own_rows(state: &State, aim: &Aim, rows: &[f64], numbers: usize, r: &mut [f64], z: &mut [f64]) {
+pub(crate) fn own_rows(
+    state: &CovarianceState,
+    aim: &CriterionContext,
+    rows: &[f64],
+    numbers: usize,
+    r: &mut [f64],
+    z: &mut [f64],
+) {
     let (g, c) = (aim.geometry, aim.modes());
     let [a, e] = &state.pull;
     for i in 0..numbers {

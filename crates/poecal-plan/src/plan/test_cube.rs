@@ -7,7 +7,7 @@ use rand_core::SeedableRng;
 use poecal_arm::Arm;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::random::{normal_vector, uniform};
+use poecal_model::simulate::random::{normal_vector, uniform_number};
 use poecal_model::simulate::random_configuration;
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -50,18 +50,18 @@ pub struct TestCube {
 }
 
 /// An arm that reaches poses within its limits.
-struct Reaching<'a> {
+struct ReachingArm<'a> {
     robot: &'a Robot,
     arm: Arm,
     readings: Vec<usize>,
     floor_m: f64,
 }
 
-impl Reaching<'_> {
+impl ReachingArm<'_> {
     /// Readings of the arm that reach a pose within limits, from near ones.
     fn reach(&self, pose: &Pose, near: &[f64]) -> Option<Vec<f64>> {
         let mut q = near.to_vec();
-        let left = self.arm.nearest(pose, &mut q);
+        let left = self.arm.solve_nearest(pose, &mut q);
         let limits = self.arm.limits();
         let is_within = q.iter().zip(limits).all(|(q, (low, high))| *low <= *q && *q <= *high);
         (left < REACHED && is_within).then_some(q)
@@ -120,7 +120,7 @@ impl Reaching<'_> {
     }
 
     /// Readings of the arm among all of the robot.
-    fn own(&self, all: &[f64]) -> Vec<f64> {
+    fn own_readings(&self, all: &[f64]) -> Vec<f64> {
         self.readings.iter().map(|&at| all.get(at).copied().unwrap_or(0.0)).collect()
     }
 }
@@ -135,13 +135,13 @@ impl Reaching<'_> {
 pub fn test_cube(robot: &Robot, stated: Option<[[f64; 3]; 2]>, floor_m: Option<f64>) -> Result<TestCube> {
     let references: Vec<f64> = robot.factors.iter().map(|it| it.reference).collect();
     let (arm, readings) = robot.arm(&references)?;
-    let it = Reaching { robot, arm, readings, floor_m: floor_m.unwrap_or(f64::NEG_INFINITY) };
+    let it = ReachingArm { robot, arm, readings, floor_m: floor_m.unwrap_or(f64::NEG_INFINITY) };
     let mut random = ChaCha8Rng::seed_from_u64(9283);
     let turns: [Matrix3<f64>; 2] = [robot.home.rotation, rotation::about(1, std::f64::consts::PI)];
     let starts: Vec<Vec<f64>> = (0..STARTS).map(|_| random_configuration(robot, &mut random)).collect();
     let found = match stated {
         Some(corners) => stated_cube(&it, corners, &starts, &turns)?,
-        None => largest(&it, &starts, &turns, &mut random)?,
+        None => find_largest_cube(&it, &starts, &turns, &mut random)?,
     };
     let (middle, side_m, poses) = found;
     let poses = poses.into_iter().map(|(pose, q)| (pose, it.all(&q))).collect();
@@ -149,23 +149,23 @@ pub fn test_cube(robot: &Robot, stated: Option<[[f64; 3]; 2]>, floor_m: Option<f
 }
 
 /// A cube: its middle, its side, its poses.
-type Found = (Pose, f64, Vec<(Pose, Vec<f64>)>);
+type CubePlacement = (Pose, f64, Vec<(Pose, Vec<f64>)>);
 
-fn whole(value: f64) -> f64 {
+fn round_to_step(value: f64) -> f64 {
     (value / STEP_M).round() * STEP_M
 }
 
-fn largest(
-    it: &Reaching<'_>,
+fn find_largest_cube(
+    it: &ReachingArm<'_>,
     starts: &[Vec<f64>],
     turns: &[Matrix3<f64>],
     random: &mut ChaCha8Rng,
-) -> Result<Found> {
-    let mut best: Option<(Found, Vec<f64>)> = None;
-    let grow = |middle: Pose, near: &[f64], best: &mut Option<(Found, Vec<f64>)>| {
+) -> Result<CubePlacement> {
+    let mut best: Option<(CubePlacement, Vec<f64>)> = None;
+    let grow = |middle: Pose, near: &[f64], best: &mut Option<(CubePlacement, Vec<f64>)>| {
         let mut side_m = best.as_ref().map_or(FIRST * it.arm.reach_m(), |(found, _)| found.1 + STEP_M);
         loop {
-            side_m = whole(side_m).max(STEP_M);
+            side_m = round_to_step(side_m).max(STEP_M);
             let Ok(poses) = it.cube(&middle, side_m, near) else { return };
             let first = poses.first().map(|it| it.1.clone()).unwrap_or_default();
             if !it.is_whole(&middle, side_m, &first) {
@@ -176,15 +176,15 @@ fn largest(
         }
     };
     for start in starts {
-        let place = it.robot.forward_kinematics(start).translation.map(whole);
+        let place = it.robot.forward_kinematics(start).translation.map(round_to_step);
         for turn in turns {
-            grow(Pose::new(*turn, place), &it.own(start), &mut best);
+            grow(Pose::new(*turn, place), &it.own_readings(start), &mut best);
         }
     }
     for _ in 0..TRIES {
         let Some(((middle, side_m, _), near)) = best.clone() else { break };
-        let step = normal_vector(random) * (0.3 * side_m * uniform(random));
-        grow(Pose::new(middle.rotation, (middle.translation + step).map(whole)), &near, &mut best);
+        let step = normal_vector(random) * (0.3 * side_m * uniform_number(random));
+        grow(Pose::new(middle.rotation, (middle.translation + step).map(round_to_step)), &near, &mut best);
     }
     let none = || {
         ErrorKind::Problem.error(
@@ -195,11 +195,11 @@ fn largest(
 }
 
 fn stated_cube(
-    it: &Reaching<'_>,
+    it: &ReachingArm<'_>,
     [from, to]: [[f64; 3]; 2],
     starts: &[Vec<f64>],
     turns: &[Matrix3<f64>],
-) -> Result<Found> {
+) -> Result<CubePlacement> {
     let sides: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]).abs());
     let side_m = sides[0];
     if sides.iter().any(|side| (side - side_m).abs() > 1e-6) || side_m <= 0.0 {
@@ -212,7 +212,7 @@ fn stated_cube(
     let mut missed = 0;
     for turn in turns {
         for start in starts {
-            match it.cube(&Pose::new(*turn, middle), side_m, &it.own(start)) {
+            match it.cube(&Pose::new(*turn, middle), side_m, &it.own_readings(start)) {
                 Ok(poses) => return Ok((Pose::new(*turn, middle), side_m, poses)),
                 Err(at) => missed = missed.max(at),
             }
@@ -238,7 +238,7 @@ mod tests {
         println!("side {} m about {:?}", found.side_m, found.middle_m);
         assert!(found.side_m > 0.3 && found.middle_m[2] - 0.5 * found.side_m >= 0.1);
         for (pose, readings) in &found.poses {
-            let (shift, turn) = robot.forward_kinematics(readings).apart(pose);
+            let (shift, turn) = robot.forward_kinematics(readings).distance_and_angle(pose);
             assert!(shift < 1e-8 && turn < 1e-8);
         }
         let apart = found.poses[1].0.translation - found.poses[3].0.translation;

@@ -1,7 +1,7 @@
 //! Rows judged as they arrive, before they are fitted; the present expected error, and the next configuration (docs/theory.md, *While measuring*).
 
-use super::known::Known;
-use super::watched::{Mistake, WatchOptions, WatchedRow};
+use super::running_fit::RunningFit;
+use super::watched_row::{Mistake, WatchOptions, WatchedRow};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -17,7 +17,7 @@ pub struct Watch {
     options: WatchOptions,
     /// Expected rows, which are fitted.
     good: Vec<u32>,
-    known: Option<Known>,
+    known: Option<RunningFit>,
     /// Scales and degrees of freedom after each fitted row.
     history: Vec<(f64, f64)>,
     last: Option<u32>,
@@ -83,7 +83,7 @@ impl Watch {
         if found.mistake.is_none() {
             self.good.push(index);
             self.fit(data)?;
-            found.mistake = self.moved(data);
+            found.mistake = self.find_moved_target(data);
         }
         if let Some(known) = &mut self.known {
             known.foresee(&mut found);
@@ -93,7 +93,7 @@ impl Watch {
 
     /// Fits the good rows.
     fn fit(&mut self, data: &Dataset) -> Result<()> {
-        let own = data.only(&self.good);
+        let own = data.select_rows(&self.good);
         if let Some(known) = &mut self.known {
             known.fit(&own);
         } else {
@@ -101,7 +101,7 @@ impl Watch {
             if numbers < FEWEST_NUMBERS + 3 * data.targets.len().max(1) + 3 {
                 return Ok(());
             }
-            self.known = Some(Known::new(&self.robot, &self.options, &own)?);
+            self.known = Some(RunningFit::new(&self.robot, &self.options, &own)?);
         }
         if let Some(known) = &self.known {
             self.history.push((known.scale, known.freedom));
@@ -110,7 +110,7 @@ impl Watch {
     }
 
     /// Tests whether the last rows share a moved target.
-    fn moved(&mut self, data: &Dataset) -> Option<Mistake> {
+    fn find_moved_target(&mut self, data: &Dataset) -> Option<Mistake> {
         let known = self.known.as_ref()?;
         let before = *self.history.len().checked_sub(TOGETHER + 1).and_then(|at| self.history.get(at))?;
         let target = data.observations.get(*self.good.last()? as usize)?.target;
@@ -123,7 +123,7 @@ impl Watch {
         let off_m = known.shift(data, &self.good, &last, target, before)?;
         let ago = self.good.iter().filter(|row| last.iter().min().is_some_and(|first| *row >= first)).count();
         self.good.retain(|row| !last.contains(row));
-        let own = data.only(&self.good);
+        let own = data.select_rows(&self.good);
         if let Some(known) = &mut self.known {
             known.fit(&own);
         }
@@ -147,13 +147,14 @@ mod tests {
     use super::*;
     use crate::plan::PlannedFit;
     use poecal_model::measurement::Measurement;
-    use poecal_model::simulate::{Kind, Simulation, elbow};
+    use poecal_model::simulate::{SessionKind, Simulation, elbow};
 
     /// Rows of a simulated session of points, one with an error of 5 mm, one with the wrong sign of joint 5, one stale.
     #[test]
     fn mistakes_are_named_as_they_arrive() {
-        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
-        let mut data = made.data.only(&[]);
+        let made =
+            Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
+        let mut data = made.data.select_rows(&[]);
         for row in 0..made.data.len() {
             let mut readings = made.data.readings(row).to_vec();
             let mut observation = made.data.observations[row];

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use poecal_arm::Arm;
 
-use super::super::parsed::Number;
+use super::super::parsed_program::Number;
 use super::super::posture::{MARGIN, Posture};
-use super::super::scan::{Token, signed};
+use super::super::scan::{Token, signed_number};
 
 /// Letters and turn numbers of a configuration.
 ///
@@ -16,7 +16,7 @@ use super::super::scan::{Token, signed};
 /// ambiguous: there, `U` and `D` are not checked. A joint with turn number t is within half a turn of t turns. The turn numbers are of joints 1, 4
 /// and 6 or of joints 4, 5 and 6, by the setup of the controller: both are tried.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Configuration {
+pub struct FanucConfiguration {
     is_flipped: bool,
     is_up: bool,
     is_front: bool,
@@ -26,7 +26,7 @@ pub struct Configuration {
 /// Joints of the turn numbers, from 0.
 const ORDERS: [[usize; 3]; 2] = [[0, 3, 5], [3, 4, 5]];
 
-impl Configuration {
+impl FanucConfiguration {
     /// The configuration in quotes, with its turn numbers.
     pub(crate) fn read(text: &[u8], tokens: &[Token]) -> Option<(Self, Vec<Number>)> {
         let mut parts = tokens.split(|it| it.is(b','));
@@ -46,12 +46,12 @@ impl Configuration {
                 return None;
             }
         }
-        let numbers: Vec<Number> = parts.map(signed).collect::<Option<_>>()?;
+        let numbers: Vec<Number> = parts.map(signed_number).collect::<Option<_>>()?;
         let turns: Vec<i32> = numbers.iter().map(|it| it.value as i32).collect();
         let is_whole = numbers.iter().all(|it| it.value.fract() == 0.0 && it.value.abs() < 100.0);
         let turns: [i32; 3] = turns.try_into().ok().filter(|_| is_whole)?;
         let (Some(is_flipped), Some(is_up), Some(is_front)) = letters else { return None };
-        Some((Configuration { is_flipped, is_up, is_front, turns }, numbers))
+        Some((FanucConfiguration { is_flipped, is_up, is_front, turns }, numbers))
     }
 
     /// True if a configuration of the nominal arm (rad) fits, borders included; false for an arm with another structure.
@@ -63,7 +63,7 @@ impl Configuration {
     fn letters(&self, nominal: &Arm, q: &[f64]) -> bool {
         let Ok(q) = <&[f64; 6]>::try_from(q) else { return false };
         let Some(posture) = Posture::new(nominal).filter(Posture::is_down_negative) else { return false };
-        let bent = posture.at(q);
+        let bent = posture.bends_at(q);
         let agrees = |found: Option<bool>, stated: bool| found.is_none_or(|it| it == stated);
         agrees(bent.is_wrist_positive, self.is_flipped)
             && agrees(bent.is_front, self.is_front)

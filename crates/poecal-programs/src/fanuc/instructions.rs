@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::super::listed::Listed;
-use super::super::scan::{Kind, Token, shown};
+use super::super::scan::{Token, TokenKind, excerpt};
+use super::super::unchanged_statements::UnchangedStatement;
 
 /// A motion to a position.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Move {
+pub(crate) struct FanucMotion {
     pub(crate) line: usize,
     /// True if the path is straight or an arc.
     pub(crate) is_straight: bool,
@@ -32,11 +32,11 @@ pub(crate) struct Instructions<'a> {
     frame: Option<u32>,
     tool: Option<u32>,
     /// Positions and the motions to them, in the order of the text.
-    pub(crate) moves: Vec<(u32, Move)>,
+    pub(crate) moves: Vec<(u32, FanucMotion)>,
     of_position: HashMap<u32, Vec<usize>>,
     /// Motions to a position whose number is computed.
-    any: Vec<Move>,
-    pub(crate) listed: Vec<Listed>,
+    any: Vec<FanucMotion>,
+    pub(crate) listed: Vec<UnchangedStatement>,
 }
 
 impl<'a> Instructions<'a> {
@@ -54,7 +54,7 @@ impl<'a> Instructions<'a> {
     }
 
     /// The motions that may lead to a position.
-    pub(crate) fn moves_to(&self, position: u32) -> Vec<&Move> {
+    pub(crate) fn moves_to(&self, position: u32) -> Vec<&FanucMotion> {
         let own = self.of_position.get(&position).into_iter().flatten();
         own.filter_map(|&it| self.moves.get(it)).map(|(_, of)| of).chain(&self.any).collect()
     }
@@ -81,7 +81,7 @@ impl<'a> Instructions<'a> {
             if token.is(b';') {
                 let instruction = std::mem::take(&mut self.open);
                 self.instruction(&instruction);
-            } else if token.kind != Kind::LineEnd {
+            } else if token.kind != TokenKind::LineEnd {
                 self.open.push(token);
             }
         }
@@ -94,11 +94,13 @@ impl<'a> Instructions<'a> {
         let way = ["J", "L", "C", "A", "S"].iter().find(|it| is(first, it));
         let leads = tokens.get(1).is_some_and(|it| is(it, "P") || is(it, "PR"));
         if let Some(way) = way.filter(|_| leads) {
-            self.moved(tokens, *way != "J");
+            self.read_motion(tokens, *way != "J");
             return;
         }
         let set = |name: &str| match tokens {
-            [word, equals, value @ ..] if is(word, name) && equals.is(b'=') => Some(super::whole(value)),
+            [word, equals, value @ ..] if is(word, name) && equals.is(b'=') => {
+                Some(super::whole_number(value))
+            }
             [word, ..] if is(word, name) => Some(None),
             _ => None,
         };
@@ -112,11 +114,11 @@ impl<'a> Instructions<'a> {
         }
     }
 
-    fn moved(&mut self, tokens: &[Token], is_straight: bool) {
+    fn read_motion(&mut self, tokens: &[Token], is_straight: bool) {
         let text = self.text;
         let has = |word: &str| tokens.iter().any(|it| it.is_word(text, word));
         let line = tokens.first().map_or(0, |it| it.line);
-        let of = Move {
+        let of = FanucMotion {
             line,
             is_straight,
             is_incremental: has("INC"),
@@ -134,12 +136,12 @@ impl<'a> Instructions<'a> {
                 break;
             };
             let length = rest.len() - others.len();
-            let name = shown(text, rest.get(..length).unwrap_or_default());
+            let name = excerpt(text, rest.get(..length).unwrap_or_default());
             let line = word.line;
-            let of = Move { line, ..of.clone() };
+            let of = FanucMotion { line, ..of.clone() };
             rest = others;
             let mut list = |reason: &str| {
-                self.listed.push(Listed { line, name: name.clone(), reason: reason.to_owned() });
+                self.listed.push(UnchangedStatement { line, name: name.clone(), reason: reason.to_owned() });
             };
             if is_register {
                 list("a position register: its value is not in the file");
@@ -150,12 +152,12 @@ impl<'a> Instructions<'a> {
                     "displaced by an offset, which is left as it is: at most the position itself is corrected",
                 );
             }
-            if let Some(position) = inside.get(..1).and_then(super::whole) {
+            if let Some(position) = inside.get(..1).and_then(super::whole_number) {
                 self.of_position.entry(position).or_default().push(self.moves.len());
                 self.moves.push((position, of));
                 continue;
             }
-            let is_known = self.any.iter().any(|it| *it == Move { line: it.line, ..of.clone() });
+            let is_known = self.any.iter().any(|it| *it == FanucMotion { line: it.line, ..of.clone() });
             if !is_known && self.any.len() < MOST {
                 self.any.push(of);
             }

@@ -11,17 +11,17 @@ mod words;
 
 use std::collections::HashMap;
 
-pub(crate) use configuration::Configuration;
-use instructions::{Instructions, Move};
-use positions::{Group, PoseOf, Position, positions};
+pub(crate) use configuration::FanucConfiguration;
+use instructions::{FanucMotion, Instructions};
+use positions::{GroupPose, Position, PositionGroup, positions};
 pub(crate) use words::RULES;
-use words::{tokens, whole};
+use words::{tokens, whole_number};
 
-use super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
+use super::axes::{ControllerAxes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::forms::PoseForm;
-use super::given::Given;
-use super::parsed::{Meant, Motion, Number, Parsed, Target};
-use super::stated::Stated;
+use super::parsed_program::{Number, ParsedProgram, PoseMeaning, ProgramMotion, ProgramTarget};
+use super::stated_configuration::StatedConfiguration;
+use super::stated_frames::StatedFrames;
 use poecal_arm::lie::Pose;
 
 /// The group of axes that is the arm.
@@ -35,7 +35,7 @@ fn section(line: &[u8]) -> Option<String> {
 }
 
 /// The positions and motions of a program.
-pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
+pub(crate) fn parse(text: &[u8], given: &StatedFrames, axes: &ControllerAxes) -> ParsedProgram {
     let mut instructions = Instructions::new(text);
     let mut name = String::new();
     let mut all = Vec::new();
@@ -57,7 +57,8 @@ pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
             tracked = Some(number + 1);
         }
     }
-    Maker { given, axes, tracked, out: Parsed::default(), targets: HashMap::new() }.all(all, &instructions)
+    FanucBuilder { given, axes, tracked, out: ParsedProgram::default(), targets: HashMap::new() }
+        .all(all, &instructions)
 }
 
 /// True if a line of the section `/APPL` states that the program follows a moving line.
@@ -70,20 +71,20 @@ fn follows_line(line: &[u8]) -> bool {
 }
 
 /// A target, with tool, frame and configuration of the motions to it.
-type Made = (Target, Option<Pose>, Option<Pose>, Stated);
+type FanucTarget = (ProgramTarget, Option<Pose>, Option<Pose>, StatedConfiguration);
 
-struct Maker<'a> {
-    given: &'a Given,
-    axes: &'a Axes,
+struct FanucBuilder<'a> {
+    given: &'a StatedFrames,
+    axes: &'a ControllerAxes,
     /// Line which states that the program follows a moving line.
     tracked: Option<usize>,
-    out: Parsed,
+    out: ParsedProgram,
     /// Motion of each position.
-    targets: HashMap<u32, Motion>,
+    targets: HashMap<u32, ProgramMotion>,
 }
 
-impl Maker<'_> {
-    fn all(mut self, positions: Vec<Position>, instructions: &Instructions<'_>) -> Parsed {
+impl FanucBuilder<'_> {
+    fn all(mut self, positions: Vec<Position>, instructions: &Instructions<'_>) -> ParsedProgram {
         let mut count: HashMap<u32, usize> = HashMap::new();
         for position in &positions {
             *count.entry(position.number).or_default() += 1;
@@ -101,8 +102,10 @@ impl Maker<'_> {
                 Ok((target, tool, frame, stated)) => {
                     let at = self.out.targets.len();
                     self.out.targets.push(target);
-                    self.targets
-                        .insert(position.number, Motion { tool, frame, stated, ..Motion::to(at, line) });
+                    self.targets.insert(
+                        position.number,
+                        ProgramMotion { tool, frame, stated, ..ProgramMotion::from_target(at, line) },
+                    );
                 }
                 Err(reason) => self.out.list(line, name, reason),
             }
@@ -119,11 +122,11 @@ impl Maker<'_> {
         for (number, of) in &instructions.moves {
             if let Some(motion) = self.targets.get(number) {
                 is_moved[motion.target] = true;
-                let motion = Motion { line: of.line, is_straight: of.is_straight, ..motion.clone() };
+                let motion = ProgramMotion { line: of.line, is_straight: of.is_straight, ..motion.clone() };
                 self.out.motions.push(motion);
             }
         }
-        let mut rest: Vec<&Motion> = self.targets.values().filter(|it| !is_moved[it.target]).collect();
+        let mut rest: Vec<&ProgramMotion> = self.targets.values().filter(|it| !is_moved[it.target]).collect();
         rest.sort_by_key(|it| it.target);
         self.out.motions.extend(rest.into_iter().cloned());
     }
@@ -135,7 +138,7 @@ impl Maker<'_> {
         Ok((own.ok_or(NO_EXTERNAL)?, others))
     }
 
-    fn target(&self, position: &Position, moves: &[&Move]) -> Result<Made, String> {
+    fn target(&self, position: &Position, moves: &[&FanucMotion]) -> Result<FanucTarget, String> {
         // Other groups in the position move without this arm, except for motions with COORD.
         let mut own = position.groups.iter().filter(|(number, _)| [0, ARM].contains(number));
         let group = match (own.next(), own.next()) {
@@ -150,23 +153,32 @@ impl Maker<'_> {
         }
         let (line, name) = (position.line, position.name.clone());
         match group {
-            Group::Joints(numbers, external) => {
+            PositionGroup::Joints(numbers, external) => {
                 let (external, _) = self.external(external)?;
                 let numbers =
-                    self.axes.joined(numbers, &external).ok_or("it has other axes than the robot")?;
-                Ok((Target { line, name, numbers, meant: Meant::Joints }, None, None, Stated::Nothing))
+                    self.axes.join_readings(numbers, &external).ok_or("it has other axes than the robot")?;
+                Ok((
+                    ProgramTarget { line, name, numbers, meant: PoseMeaning::Joints },
+                    None,
+                    None,
+                    StatedConfiguration::Nothing,
+                ))
             }
-            Group::Pose(pose) => {
+            PositionGroup::Pose(pose) => {
                 let (numbers, tool, frame, stated) = self.pose(pose, moves)?;
-                let meant = Meant::Pose(PoseForm::Wpr);
-                Ok((Target { line, name, numbers, meant }, Some(tool), Some(frame), stated))
+                let meant = PoseMeaning::Pose(PoseForm::Wpr);
+                Ok((ProgramTarget { line, name, numbers, meant }, Some(tool), Some(frame), stated))
             }
-            Group::Unknown(reason) => Err((*reason).to_owned()),
+            PositionGroup::Unknown(reason) => Err((*reason).to_owned()),
         }
     }
 
     /// Numbers, tool, frame and configuration of a pose.
-    fn pose(&self, pose: &PoseOf, moves: &[&Move]) -> Result<(Vec<Number>, Pose, Pose, Stated), String> {
+    fn pose(
+        &self,
+        pose: &GroupPose,
+        moves: &[&FanucMotion],
+    ) -> Result<(Vec<Number>, Pose, Pose, StatedConfiguration), String> {
         if let Some(line) = self.tracked {
             return Err(format!("the program follows a moving line (line {line})"));
         }
@@ -202,6 +214,6 @@ impl Maker<'_> {
         let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool-data")?;
         let configuration = pose.configuration.clone().ok_or("its configuration is not understood")?;
         let numbers = pose.numbers.iter().chain(&external).cloned().collect();
-        Ok((numbers, tool, frame, Stated::Fanuc(configuration)))
+        Ok((numbers, tool, frame, StatedConfiguration::Fanuc(configuration)))
     }
 }

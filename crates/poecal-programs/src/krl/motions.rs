@@ -2,37 +2,37 @@
 
 use std::collections::BTreeSet;
 
-use super::super::axes::Axes;
-use super::super::build::Blocks;
-use super::super::flow::{Node, State, Walk};
+use super::super::axes::ControllerAxes;
+use super::super::build::ProgramBlocks;
+use super::super::flow::{FlowNode, FlowState, FlowWalk};
 use super::super::forms::PoseForm;
-use super::super::given::Given;
-use super::super::parsed::{Meant, Motion, Parsed, Setting, Target};
-use super::super::scan::{Kind, Scanner, Token, bracket, is_one_of, parts, shown};
-use super::super::stated::Stated;
-use super::data::{numbered, stated};
+use super::super::parsed_program::{ActiveFrame, ParsedProgram, PoseMeaning, ProgramMotion, ProgramTarget};
+use super::super::scan::{Scanner, Token, TokenKind, bracket, excerpt, is_one_of, parts};
+use super::super::stated_configuration::StatedConfiguration;
+use super::super::stated_frames::StatedFrames;
+use super::data::{numbered_frame, stated_pose};
 use super::status::Status;
-use super::values::{Place, Value, Variables, assignment, value};
-use super::{MOTIONS, RULES, Way, reason};
+use super::values::{KrlValue, KrlVariables, ToolAndBase, assignment, value};
+use super::{KrlMotionType, MOTIONS, RULES, reason};
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::Result;
 
 /// Tool and base of a motion, if they are its own.
-type Own = (Option<Setting>, Option<Setting>);
+type OwnFrames = (Option<ActiveFrame>, Option<ActiveFrame>);
 
 /// A statement with an effect on motions.
 #[derive(Clone, Debug)]
-pub(crate) enum Step {
+pub(crate) enum KrlStep {
     /// A motion to the target with this index.
     Move {
         target: usize,
         line: usize,
         is_straight: bool,
-        stated: Stated,
-        own: Own,
+        stated: StatedConfiguration,
+        own: OwnFrames,
     },
-    Tool(Setting),
-    Frame(Setting),
+    Tool(ActiveFrame),
+    Frame(ActiveFrame),
     /// The position of the robot becomes unknown.
     Away,
     /// The position, the tool and the base become unknown.
@@ -48,34 +48,39 @@ const FUNCTIONS: &str = "AND OR NOT EXOR B_AND B_OR ABS SQRT SIN COS TAN ACOS AT
                          FORWARD INVERSE STRCOMP STRFIND ROUND";
 
 /// Reads the statements of a program.
-pub(crate) struct Reader<'r> {
+pub(crate) struct KrlReader<'r> {
     text: &'r [u8],
-    given: &'r Given,
-    axes: &'r Axes,
-    variables: &'r Variables,
-    out: Parsed,
+    given: &'r StatedFrames,
+    axes: &'r ControllerAxes,
+    variables: &'r KrlVariables,
+    out: ParsedProgram,
     /// Names of variables in another file, which were already reported.
     absent: BTreeSet<String>,
-    blocks: Blocks<Step>,
+    blocks: ProgramBlocks<KrlStep>,
     /// Routines that other files may call.
     open: BTreeSet<String>,
 }
 
-impl<'r> Reader<'r> {
-    pub(crate) fn new(text: &'r [u8], given: &'r Given, axes: &'r Axes, variables: &'r Variables) -> Self {
-        Reader {
+impl<'r> KrlReader<'r> {
+    pub(crate) fn new(
+        text: &'r [u8],
+        given: &'r StatedFrames,
+        axes: &'r ControllerAxes,
+        variables: &'r KrlVariables,
+    ) -> Self {
+        KrlReader {
             text,
             given,
             axes,
             variables,
-            out: Parsed::default(),
+            out: ParsedProgram::default(),
             absent: BTreeSet::new(),
-            blocks: Blocks::new(),
+            blocks: ProgramBlocks::new(),
             open: BTreeSet::new(),
         }
     }
 
-    pub(crate) fn read(mut self) -> Result<Parsed> {
+    pub(crate) fn read(mut self) -> Result<ParsedProgram> {
         let mut scanner = Scanner::new(self.text, &RULES);
         let mut tokens = Vec::new();
         while scanner.statement(&mut tokens).is_some() {
@@ -86,26 +91,26 @@ impl<'r> Reader<'r> {
         let given = self.given;
         let moves_root = self.variables.moves_root;
         let motions = &mut self.out.motions;
-        let mut step = |step: &Step, state: &mut State| match step {
-            Step::Tool(setting) => state.tool = *setting,
-            Step::Frame(setting) => state.frame = *setting,
-            Step::Away => state.last = None,
-            Step::Lost => *state = state.lost(),
-            Step::Move { target, line, is_straight, stated, own } => {
-                let frame = own.1.unwrap_or(state.frame).or(given.frame(None));
-                motions.push(Motion {
+        let mut step = |step: &KrlStep, state: &mut FlowState| match step {
+            KrlStep::Tool(setting) => state.tool = *setting,
+            KrlStep::Frame(setting) => state.frame = *setting,
+            KrlStep::Away => state.last = None,
+            KrlStep::Lost => *state = state.after_unknown_routine(),
+            KrlStep::Move { target, line, is_straight, stated, own } => {
+                let frame = own.1.unwrap_or(state.frame).pose_or(given.frame(None));
+                motions.push(ProgramMotion {
                     after: state.last,
                     is_straight: *is_straight,
-                    tool: own.0.unwrap_or(state.tool).or(given.tool(None)),
+                    tool: own.0.unwrap_or(state.tool).pose_or(given.tool(None)),
                     frame: frame.filter(|_| !moves_root),
                     stated: stated.clone(),
-                    ..Motion::to(*target, *line)
+                    ..ProgramMotion::from_target(*target, *line)
                 });
                 state.last = Some(motions.len() - 1);
             }
         };
         let open = &self.open;
-        let mut walk = Walk::new(&self.blocks.routines, self.blocks.size, true, &mut step);
+        let mut walk = FlowWalk::new(&self.blocks.routines, self.blocks.size, true, &mut step);
         walk.run(&main, &self.blocks.called, &|name| open.contains(name));
         Ok(self.out)
     }
@@ -114,9 +119,13 @@ impl<'r> Reader<'r> {
     fn list_unused(&mut self) {
         for variable in self.variables.known.values().filter(|it| it.assignments == 1) {
             let numbers = match &variable.value {
-                Value::Pose(numbers, status) if *status != Status::default() => numbers,
-                Value::Joints(numbers) => numbers,
-                Value::Pose(..) | Value::Broken(_) | Value::Place(_) | Value::Name(_) | Value::Other => {
+                KrlValue::Pose(numbers, status) if *status != Status::default() => numbers,
+                KrlValue::Joints(numbers) => numbers,
+                KrlValue::Pose(..)
+                | KrlValue::Broken(_)
+                | KrlValue::Place(_)
+                | KrlValue::Name(_)
+                | KrlValue::Other => {
                     continue;
                 }
             };
@@ -127,7 +136,7 @@ impl<'r> Reader<'r> {
     }
 
     fn statement(&mut self, tokens: &[Token]) -> Result<()> {
-        let Some(first) = tokens.first().filter(|it| it.kind == Kind::Word) else { return Ok(()) };
+        let Some(first) = tokens.first().filter(|it| it.kind == TokenKind::Word) else { return Ok(()) };
         let word = first.text(self.text).to_ascii_uppercase();
         let rest = &tokens[1..];
         let line = first.line;
@@ -162,16 +171,16 @@ impl<'r> Reader<'r> {
             "ENDLOOP" | "ENDWHILE" | "ENDFOR" | "ENDIF" | "ENDSWITCH" | "END" | "ENDFCT" => self.blocks.end(),
             "EXIT" | "RETURN" | "GOTO" | "RESUME" => {
                 self.calls(rest);
-                self.blocks.push([Node::Leave]);
+                self.blocks.push([FlowNode::Leave]);
             }
-            _ if matches!(rest, [colon] if colon.is(b':')) => self.blocks.push([Node::Label]),
+            _ if matches!(rest, [colon] if colon.is(b':')) => self.blocks.push([FlowNode::Label]),
             "BAS" => self.bas(rest),
-            _ => self.other(&word, tokens),
+            _ => self.read_other(&word, tokens),
         }
         Ok(())
     }
 
-    fn other(&mut self, word: &str, tokens: &[Token]) {
+    fn read_other(&mut self, word: &str, tokens: &[Token]) {
         if let Some((_, way)) = MOTIONS.iter().find(|it| it.0 == word) {
             return self.motion(tokens, *way);
         }
@@ -180,7 +189,7 @@ impl<'r> Reader<'r> {
         }
         self.calls(tokens);
         if let Some(it) = assignment(self.text, tokens) {
-            self.assigned(&it.key, it.is_part, it.value);
+            self.read_assignment(&it.key, it.is_part, it.value);
         }
     }
 
@@ -188,72 +197,72 @@ impl<'r> Reader<'r> {
     fn calls(&mut self, tokens: &[Token]) {
         for pair in tokens.windows(2) {
             let name = pair[0].text(self.text).to_ascii_uppercase();
-            if pair[0].kind == Kind::Word && pair[1].is(b'(') && !is_one_of(FUNCTIONS, &name) {
-                self.blocks.push([Node::Call(name)]);
+            if pair[0].kind == TokenKind::Word && pair[1].is(b'(') && !is_one_of(FUNCTIONS, &name) {
+                self.blocks.push([FlowNode::Call(name)]);
             }
         }
     }
 
-    fn steps(&mut self, steps: impl IntoIterator<Item = Step>) {
-        self.blocks.push(steps.into_iter().map(Node::Step));
+    fn steps(&mut self, steps: impl IntoIterator<Item = KrlStep>) {
+        self.blocks.push(steps.into_iter().map(FlowNode::Step));
     }
 
     /// Follows an assignment to a variable of the controller.
-    fn assigned(&mut self, key: &str, is_part: bool, value: &[Token]) {
+    fn read_assignment(&mut self, key: &str, is_part: bool, value: &[Token]) {
         match key {
-            "$TOOL" | "$BASE" if is_part => self.steps([Step::Lost]),
-            "$TOOL" => self.steps([Step::Tool(self.setting(value, true))]),
-            "$BASE" => self.steps([Step::Frame(self.setting(value, false))]),
+            "$TOOL" | "$BASE" if is_part => self.steps([KrlStep::Lost]),
+            "$TOOL" => self.steps([KrlStep::Tool(self.setting(value, true))]),
+            "$BASE" => self.steps([KrlStep::Frame(self.setting(value, false))]),
             "FDAT_ACT" => {
                 let (tool, base) = self.of_place(self.place(value));
-                self.steps([Step::Tool(tool), Step::Frame(base)]);
+                self.steps([KrlStep::Tool(tool), KrlStep::Frame(base)]);
             }
             "$IPO_MODE" if value.iter().any(|it| it.is_word(self.text, "TCP")) => {
-                self.steps([Step::Tool(Setting::Unknown), Step::Frame(Setting::Unknown)]);
+                self.steps([KrlStep::Tool(ActiveFrame::Unknown), KrlStep::Frame(ActiveFrame::Unknown)]);
             }
             _ => {}
         }
     }
 
     /// Tool and base of a named point.
-    fn place(&self, tokens: &[Token]) -> Option<Place> {
-        let Value::Name(key) = value(self.text, tokens, self.axes) else { return None };
+    fn place(&self, tokens: &[Token]) -> Option<ToolAndBase> {
+        let KrlValue::Name(key) = value(self.text, tokens, self.axes) else { return None };
         self.variables.place(&key)
     }
 
     /// A tool or base of the controller's lists by its number.
-    fn numbered(&self, list: &str, number: Option<i64>) -> Setting {
+    fn numbered_setting(&self, list: &str, number: Option<i64>) -> ActiveFrame {
         number
-            .and_then(|it| numbered(list, it, self.variables, self.given))
-            .map_or(Setting::Unknown, Setting::Is)
+            .and_then(|it| numbered_frame(list, it, self.variables, self.given))
+            .map_or(ActiveFrame::Unknown, ActiveFrame::Is)
     }
 
-    fn of_place(&self, place: Option<Place>) -> (Setting, Setting) {
+    fn of_place(&self, place: Option<ToolAndBase>) -> (ActiveFrame, ActiveFrame) {
         let Some(place) = place.filter(|it| !it.is_external) else {
-            return (Setting::Unknown, Setting::Unknown);
+            return (ActiveFrame::Unknown, ActiveFrame::Unknown);
         };
-        (self.numbered("TOOL_DATA", place.tool), self.numbered("BASE_DATA", place.base))
+        (self.numbered_setting("TOOL_DATA", place.tool), self.numbered_setting("BASE_DATA", place.base))
     }
 
     /// The pose that is assigned to `$TOOL` or `$BASE`.
-    fn setting(&self, tokens: &[Token], is_tool: bool) -> Setting {
+    fn setting(&self, tokens: &[Token], is_tool: bool) -> ActiveFrame {
         let list = if is_tool { "TOOL_DATA" } else { "BASE_DATA" };
         let user =
             |name: &str| if is_tool { self.given.tool(Some(name)) } else { self.given.frame(Some(name)) };
         let pose = match value(self.text, tokens, self.axes) {
-            Value::Name(key) if key == "$NULLFRAME" || (key == "$WORLD" && !is_tool) => {
+            KrlValue::Name(key) if key == "$NULLFRAME" || (key == "$WORLD" && !is_tool) => {
                 Some(Pose::identity())
             }
-            Value::Name(key) => {
+            KrlValue::Name(key) => {
                 match key.strip_prefix(list).and_then(|it| it.strip_prefix('[')?.strip_suffix(']')) {
-                    Some(number) => return self.numbered(list, number.parse().ok()),
-                    None => user(&key).or_else(|| stated(&key, self.variables)),
+                    Some(number) => return self.numbered_setting(list, number.parse().ok()),
+                    None => user(&key).or_else(|| stated_pose(&key, self.variables)),
                 }
             }
-            Value::Pose(numbers, _) => PoseForm::Abc.of_numbers(&numbers),
-            Value::Joints(_) | Value::Broken(_) | Value::Place(_) | Value::Other => None,
+            KrlValue::Pose(numbers, _) => PoseForm::Abc.of_numbers(&numbers),
+            KrlValue::Joints(_) | KrlValue::Broken(_) | KrlValue::Place(_) | KrlValue::Other => None,
         };
-        pose.map_or(Setting::Unknown, Setting::Is)
+        pose.map_or(ActiveFrame::Unknown, ActiveFrame::Is)
     }
 
     /// Follows `BAS(#TOOL, 3)` and other calls of BAS.
@@ -266,21 +275,21 @@ impl<'r> Reader<'r> {
             .map_or("", |it| it.text(self.text))
             .to_ascii_uppercase();
         let number = match arguments.get(1) {
-            Some([Token { kind: Kind::Number(value, 0), .. }]) => Some(*value as i64),
+            Some([Token { kind: TokenKind::Number(value, 0), .. }]) => Some(*value as i64),
             _ => None,
         };
         // They set speeds; tool and base are set by FDAT_ACT, which is assigned before.
         const SPEEDS: &str = "PTP_PARAMS CP_PARAMS PTP_DAT CP_DAT VEL_PTP VEL_CP ACC_PTP ACC_CP OV_PRO";
         let step = match word.as_str() {
-            "TOOL" => Step::Tool(self.numbered("TOOL_DATA", number)),
-            "BASE" => Step::Frame(self.numbered("BASE_DATA", number)),
+            "TOOL" => KrlStep::Tool(self.numbered_setting("TOOL_DATA", number)),
+            "BASE" => KrlStep::Frame(self.numbered_setting("BASE_DATA", number)),
             word if is_one_of(SPEEDS, word) => return,
-            _ => Step::Lost,
+            _ => KrlStep::Lost,
         };
         self.steps([step]);
     }
 
-    fn motion(&mut self, tokens: &[Token], way: Way) {
+    fn motion(&mut self, tokens: &[Token], way: KrlMotionType) {
         let (word, rest) = (&tokens[0], &tokens[1..]);
         let line = word.line;
         // Words behind the targets concern the path.
@@ -288,31 +297,31 @@ impl<'r> Reader<'r> {
         let is_end = |it: &Token| ends.iter().any(|end| it.is_word(self.text, end));
         let (targets, others) = rest.split_at(rest.iter().position(is_end).unwrap_or(rest.len()));
         let arguments = parts(targets);
-        if way == Way::Relative {
-            self.out.list(line, shown(self.text, tokens), reason::RELATIVE);
-            return self.steps([Step::Away]);
+        if way == KrlMotionType::Relative {
+            self.out.list(line, excerpt(self.text, tokens), reason::RELATIVE);
+            return self.steps([KrlStep::Away]);
         }
-        let own = self.own(others);
+        let own = self.own_frames(others);
         let is_angle = |it: &&[Token]| it.first().is_some_and(|word| word.is_word(self.text, "CA"));
         let has_angle = arguments.iter().any(is_angle);
         let is_arc = word.text(self.text).to_ascii_uppercase().ends_with("CIRC");
         let count = if is_arc { 2 } else { 1 };
         for argument in arguments.iter().filter(|it| !is_angle(it)).take(count) {
             if has_angle {
-                self.out.list(line, shown(self.text, argument), reason::ANGLE);
-                self.steps([Step::Away]);
+                self.out.list(line, excerpt(self.text, argument), reason::ANGLE);
+                self.steps([KrlStep::Away]);
                 continue;
             }
             let step = match self.aim(argument) {
                 Ok((target, stated)) => {
-                    Step::Move { target, line, is_straight: way == Way::Straight, stated, own }
+                    KrlStep::Move { target, line, is_straight: way == KrlMotionType::Straight, stated, own }
                 }
                 Err(reason) => {
-                    let name = shown(self.text, argument);
+                    let name = excerpt(self.text, argument);
                     if reason != reason::ABSENT || self.absent.insert(name.to_ascii_uppercase()) {
                         self.out.list(line, name, reason);
                     }
-                    Step::Away
+                    KrlStep::Away
                 }
             };
             self.steps([step]);
@@ -320,7 +329,7 @@ impl<'r> Reader<'r> {
     }
 
     /// Tool and base in the statement of the motion itself.
-    fn own(&self, others: &[Token]) -> Own {
+    fn own_frames(&self, others: &[Token]) -> OwnFrames {
         let mut own = (None, None);
         let Some(start) = others.iter().position(|it| it.is_word(self.text, "WITH")) else { return own };
         for part in parts(&others[start + 1..]) {
@@ -342,33 +351,33 @@ impl<'r> Reader<'r> {
     }
 
     /// The target that an argument names or states.
-    fn aim(&mut self, tokens: &[Token]) -> std::result::Result<(usize, Stated), &'static str> {
+    fn aim(&mut self, tokens: &[Token]) -> std::result::Result<(usize, StatedConfiguration), &'static str> {
         let line = tokens.first().map_or(0, |it| it.line);
         let (found, line, name) = match value(self.text, tokens, self.axes) {
-            Value::Name(key) if key.starts_with('$') => {
+            KrlValue::Name(key) if key.starts_with('$') => {
                 return Err(if self.variables.of_name(&key).is_err() {
                     reason::COMPUTED
                 } else {
                     reason::SEVERAL
                 });
             }
-            Value::Name(key) => {
+            KrlValue::Name(key) => {
                 let variable = self.variables.of_name(&key)?;
                 (variable.value.clone(), variable.line, variable.name.clone())
             }
-            found @ (Value::Pose(..)
-            | Value::Joints(_)
-            | Value::Broken(_)
-            | Value::Place(_)
-            | Value::Other) => (found, line, shown(self.text, tokens)),
+            found @ (KrlValue::Pose(..)
+            | KrlValue::Joints(_)
+            | KrlValue::Broken(_)
+            | KrlValue::Place(_)
+            | KrlValue::Other) => (found, line, excerpt(self.text, tokens)),
         };
         let (numbers, meant, stated) = match found {
-            Value::Pose(numbers, status) => (numbers, Meant::Pose(PoseForm::Abc), status.into()),
-            Value::Joints(numbers) => (numbers, Meant::Joints, Stated::Nothing),
-            Value::Broken(reason) => return Err(reason),
-            Value::Place(_) => return Err(reason::UNKNOWN),
-            Value::Name(_) | Value::Other => return Err(reason::COMPUTED),
+            KrlValue::Pose(numbers, status) => (numbers, PoseMeaning::Pose(PoseForm::Abc), status.into()),
+            KrlValue::Joints(numbers) => (numbers, PoseMeaning::Joints, StatedConfiguration::Nothing),
+            KrlValue::Broken(reason) => return Err(reason),
+            KrlValue::Place(_) => return Err(reason::UNKNOWN),
+            KrlValue::Name(_) | KrlValue::Other => return Err(reason::COMPUTED),
         };
-        Ok((self.out.target(Target { line, name, numbers, meant }), stated))
+        Ok((self.out.target(ProgramTarget { line, name, numbers, meant }), stated))
     }
 }

@@ -18,41 +18,41 @@ pub struct Status {
 const BORDER: f64 = 2e-4;
 
 /// A bit of a configuration; `None` at the border, where the program's bit applies.
-type Bit = Option<bool>;
+type StatusBit = Option<bool>;
 
-fn sided(value: f64, border: f64) -> Bit {
+fn sided(value: f64, border: f64) -> StatusBit {
     (value.abs() > border).then_some(value > 0.0)
 }
 
 impl Status {
     /// True if a configuration of the nominal arm has the stated bits; at borders either value is accepted.
     pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
-        let fit = |stated: Option<u32>, bits: &[Bit]| {
+        let fit = |stated: Option<u32>, bits: &[StatusBit]| {
             let Some(stated) = stated else { return true };
             bits.iter().enumerate().all(|(at, bit)| bit.is_none_or(|it| it == (stated >> at & 1 == 1)))
         };
-        let turns: Vec<Bit> = counted.iter().take(6).map(|it| sided(-it, BORDER)).collect();
+        let turns: Vec<StatusBit> = counted.iter().take(6).map(|it| sided(-it, BORDER)).collect();
         fit(self.turn, &turns) && fit(self.status, &status(nominal, q, BORDER))
     }
 
     /// The stated numbers for another configuration: further bits of the program are kept.
     pub(crate) fn words(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> Vec<f64> {
-        let with = |stated: u32, bits: &[Bit]| {
-            let put = |all: u32, (at, bit): (usize, &Bit)| match bit {
+        let with = |stated: u32, bits: &[StatusBit]| {
+            let put = |all: u32, (at, bit): (usize, &StatusBit)| match bit {
                 Some(true) => all | 1 << at,
                 Some(false) => all & !(1 << at),
                 None => all,
             };
             f64::from(bits.iter().enumerate().fold(stated, put))
         };
-        let turns: Vec<Bit> = counted.iter().take(6).map(|it| Some(*it < 0.0)).collect();
+        let turns: Vec<StatusBit> = counted.iter().take(6).map(|it| Some(*it < 0.0)).collect();
         let status = self.status.map(|it| with(it, &status(nominal, q, 0.0)));
         status.into_iter().chain(self.turn.map(|it| with(it, &turns))).collect()
     }
 }
 
 /// The three bits of the status of six revolute axes.
-fn status(nominal: &Arm, q: &[f64], border: f64) -> [Bit; 3] {
+fn status(nominal: &Arm, q: &[f64], border: f64) -> [StatusBit; 3] {
     let placed = axes(nominal, q);
     let Some(centre) = wrist_centre(&placed) else { return [None; 3] };
     let [(p1, w1), (p2, _), (p3, w3), ..] = placed[..] else { return [None; 3] };

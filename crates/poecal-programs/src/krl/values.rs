@@ -2,15 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use super::super::axes::Axes;
-use super::super::parsed::Number;
-use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, outside, parts, signed};
+use super::super::axes::ControllerAxes;
+use super::super::parsed_program::Number;
+use super::super::scan::{
+    LexicalRules, Scanner, Token, TokenKind, bracket, is_one_of, outside_brackets, parts, signed_number,
+};
 use super::reason;
 use super::status::Status;
 
 /// Kind and contents of an expression.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Value {
+pub(crate) enum KrlValue {
     /// A pose: X, Y, Z, A, B, C, then S and T as far as they are stated.
     Pose(Vec<Number>, Status),
     /// Joints: a number for each reading.
@@ -18,7 +20,7 @@ pub(crate) enum Value {
     /// An aggregate of a target that cannot be taken, with the reason.
     Broken(&'static str),
     /// Tool and base of a point of an inline form.
-    Place(Place),
+    Place(ToolAndBase),
     /// A variable, or an element of one.
     Name(String),
     /// Anything else.
@@ -27,7 +29,7 @@ pub(crate) enum Value {
 
 /// Tool and base by their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct ToolAndBase {
     pub(crate) tool: Option<i64>,
     pub(crate) base: Option<i64>,
     /// True if the tool is stationary and the workpiece moves.
@@ -36,10 +38,10 @@ pub(crate) struct Place {
 
 /// A variable of a file.
 #[derive(Clone, Debug)]
-pub(crate) struct Variable {
+pub(crate) struct KrlVariable {
     pub(crate) assignments: usize,
     pub(crate) line: usize,
-    pub(crate) value: Value,
+    pub(crate) value: KrlValue,
     /// Name in the text.
     pub(crate) name: String,
     /// True if it is declared as a frame.
@@ -48,9 +50,9 @@ pub(crate) struct Variable {
 
 /// The variables of a file.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Variables {
+pub(crate) struct KrlVariables {
     /// Variables by name in capitals.
-    pub(crate) known: BTreeMap<String, Variable>,
+    pub(crate) known: BTreeMap<String, KrlVariable>,
     /// True if the file is a list of data.
     pub(crate) is_data: bool,
     /// True if the file moves the robot's base.
@@ -68,10 +70,10 @@ pub(crate) struct Assignment<'t> {
 
 /// The assignment of a statement, if it is one.
 pub(crate) fn assignment<'t>(text: &[u8], tokens: &'t [Token]) -> Option<Assignment<'t>> {
-    let (equals, _) = outside(tokens).find(|(_, it)| it.is(b'='))?;
+    let (equals, _) = outside_brackets(tokens).find(|(_, it)| it.is(b'='))?;
     let (left, value) = (&tokens[..equals], &tokens[equals + 1..]);
     // `DECL GLOBAL E6POS XP1`: the name is the last word before an index or a part.
-    let words = left.iter().take_while(|it| it.kind == Kind::Word).count();
+    let words = left.iter().take_while(|it| it.kind == TokenKind::Word).count();
     let at = words.checked_sub(1)?;
     let name = left.get(at)?;
     let is_frame = left[..at].iter().any(|it| it.is_word(text, "FRAME"));
@@ -85,7 +87,7 @@ pub(crate) fn key(text: &[u8], name: &Token, index: Option<&[Token]>) -> String 
     let name = name.text(text).to_ascii_uppercase();
     match index {
         None => name,
-        Some([Token { kind: Kind::Number(value, 0), .. }]) => format!("{name}[{value}]"),
+        Some([Token { kind: TokenKind::Number(value, 0), .. }]) => format!("{name}[{value}]"),
         Some(_) => format!("{name}[*]"),
     }
 }
@@ -93,10 +95,10 @@ pub(crate) fn key(text: &[u8], name: &Token, index: Option<&[Token]>) -> String 
 /// Statements that compare, and assign nothing.
 const CONDITIONS: &str = "IF WHILE UNTIL WAIT FOR SIGNAL INTERRUPT TRIGGER ON_ERROR_PROCEED";
 
-impl Variables {
+impl KrlVariables {
     /// The variables of a text.
-    pub(crate) fn from_text(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
-        let mut out = Variables::default();
+    pub(crate) fn from_text(text: &[u8], rules: &LexicalRules, axes: &ControllerAxes) -> Self {
+        let mut out = KrlVariables::default();
         let mut scanner = Scanner::new(text, rules);
         let mut tokens = Vec::new();
         while scanner.statement(&mut tokens).is_some() {
@@ -104,8 +106,8 @@ impl Variables {
             if ["DEF", "DEFFCT", "GLOBAL"].iter().any(|it| first.is_word(text, it))
                 && let Some(open) = tokens.iter().position(|it| it.is(b'('))
             {
-                for parameter in tokens[open..].iter().filter(|it| it.kind == Kind::Word) {
-                    out.assign(&key(text, parameter, None), text, parameter, Value::Other, 2, false);
+                for parameter in tokens[open..].iter().filter(|it| it.kind == TokenKind::Word) {
+                    out.assign(&key(text, parameter, None), text, parameter, KrlValue::Other, 2, false);
                 }
                 continue;
             }
@@ -117,7 +119,7 @@ impl Variables {
             out.hand_over(text, &tokens);
             if let Some(it) = assignment(text, &tokens) {
                 out.moves_root |= it.key == "$ROBROOT";
-                let value = if it.is_part { Value::Other } else { value(text, it.value, axes) };
+                let value = if it.is_part { KrlValue::Other } else { value(text, it.value, axes) };
                 let times = if it.is_part { 2 } else { 1 };
                 out.assign(&it.key, text, it.name, value, times, it.is_frame);
             }
@@ -127,34 +129,42 @@ impl Variables {
 
     /// Counts variables that are passed to a routine as changed.
     fn hand_over(&mut self, text: &[u8], tokens: &[Token]) {
-        for (at, token) in tokens.iter().enumerate().filter(|(_, it)| it.kind == Kind::Word) {
+        for (at, token) in tokens.iter().enumerate().filter(|(_, it)| it.kind == TokenKind::Word) {
             let Some((inside, _)) = bracket(&tokens[at + 1..], b'(', b')') else { continue };
             if token.is_word(text, "BAS") {
                 continue;
             }
             for argument in parts(inside) {
                 if let [name, rest @ ..] = argument
-                    && name.kind == Kind::Word
+                    && name.kind == TokenKind::Word
                     && (rest.is_empty() || rest[0].is(b'['))
                 {
                     let index = bracket(rest, b'[', b']').map(|it| it.0);
-                    self.assign(&key(text, name, index), text, name, Value::Other, 2, false);
+                    self.assign(&key(text, name, index), text, name, KrlValue::Other, 2, false);
                 }
             }
         }
     }
 
-    fn assign(&mut self, key: &str, text: &[u8], name: &Token, value: Value, times: usize, is_frame: bool) {
+    fn assign(
+        &mut self,
+        key: &str,
+        text: &[u8],
+        name: &Token,
+        value: KrlValue,
+        times: usize,
+        is_frame: bool,
+    ) {
         let name_as_written = match key.find('[') {
             Some(at) => format!("{}{}", name.text(text), &key[at..]),
             None => name.text(text).to_owned(),
         };
-        let new = || Variable { assignments: 0, line: name.line, value, name: name_as_written, is_frame };
+        let new = || KrlVariable { assignments: 0, line: name.line, value, name: name_as_written, is_frame };
         self.known.entry(key.to_owned()).or_insert_with(new).assignments += times;
     }
 
     /// The variable by a name in capitals, if it is assigned once, else the reason why it has no value.
-    pub(crate) fn of_name(&self, key: &str) -> Result<&Variable, &'static str> {
+    pub(crate) fn of_name(&self, key: &str) -> Result<&KrlVariable, &'static str> {
         let base = key.split('[').next().unwrap_or(key);
         let is_written = |key: String| self.known.contains_key(&key);
         if key.ends_with("[*]") {
@@ -172,45 +182,45 @@ impl Variables {
     }
 
     /// Tool and base of a point by its name in capitals.
-    pub(crate) fn place(&self, key: &str) -> Option<Place> {
-        let Value::Place(place) = self.of_name(key).ok()?.value else { return None };
+    pub(crate) fn place(&self, key: &str) -> Option<ToolAndBase> {
+        let KrlValue::Place(place) = self.of_name(key).ok()?.value else { return None };
         Some(place)
     }
 }
 
 /// Kind and contents of an expression.
-pub(crate) fn value(text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
+pub(crate) fn value(text: &[u8], tokens: &[Token], axes: &ControllerAxes) -> KrlValue {
     match tokens {
-        [name] if name.kind == Kind::Word => Value::Name(key(text, name, None)),
-        [name, rest @ ..] if name.kind == Kind::Word => match bracket(rest, b'[', b']') {
-            Some((index, [])) => Value::Name(key(text, name, Some(index))),
-            _ => Value::Other,
+        [name] if name.kind == TokenKind::Word => KrlValue::Name(key(text, name, None)),
+        [name, rest @ ..] if name.kind == TokenKind::Word => match bracket(rest, b'[', b']') {
+            Some((index, [])) => KrlValue::Name(key(text, name, Some(index))),
+            _ => KrlValue::Other,
         },
         _ => match bracket(tokens, b'{', b'}') {
             Some((inside, [])) => aggregate(text, inside, axes),
-            _ => Value::Other,
+            _ => KrlValue::Other,
         },
     }
 }
 
 /// Fields of an aggregate: the name of each in capitals, its number if it is one, and its tokens.
-struct Fields<'t>(Vec<(String, Option<Number>, &'t [Token])>);
+struct AggregateFields<'t>(Vec<(String, Option<Number>, &'t [Token])>);
 
-impl<'t> Fields<'t> {
+impl<'t> AggregateFields<'t> {
     /// The fields of an aggregate without its brackets; `None` if a field occurs twice, or has no name.
     fn from_tokens(text: &[u8], inside: &'t [Token]) -> Option<Self> {
         let inside = match inside {
-            [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
+            [kind, colon, rest @ ..] if kind.kind == TokenKind::Word && colon.is(b':') => rest,
             all => all,
         };
-        let mut fields = Fields(Vec::new());
+        let mut fields = AggregateFields(Vec::new());
         for part in parts(inside) {
             let [name, value @ ..] = part else { return None };
             let name = name.text(text).to_ascii_uppercase();
             if fields.get(&name).is_some() {
                 return None;
             }
-            fields.0.push((name, signed(value).or_else(|| bits(text, value)), value));
+            fields.0.push((name, signed_number(value).or_else(|| bits(text, value)), value));
         }
         Some(fields)
     }
@@ -231,7 +241,7 @@ impl<'t> Fields<'t> {
     }
 
     /// True if external axes are not zero that are neither of the model nor among these names.
-    fn has_external(&self, axes: &Axes, names: &[String]) -> bool {
+    fn has_external(&self, axes: &ControllerAxes, names: &[String]) -> bool {
         let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
         let is_of_model = |name: &str| (1..=axes.external.len()).any(|it| name == format!("E{it}"));
         let mut external =
@@ -240,19 +250,19 @@ impl<'t> Fields<'t> {
     }
 }
 
-fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
-    let Some(fields) = Fields::from_tokens(text, inside) else { return Value::Other };
+fn aggregate(text: &[u8], inside: &[Token], axes: &ControllerAxes) -> KrlValue {
+    let Some(fields) = AggregateFields::from_tokens(text, inside) else { return KrlValue::Other };
     let has = |name: &str| fields.get(name).is_some();
     let found = if has("TOOL_NO") || has("BASE_NO") {
-        return Value::Place(place(text, &fields));
+        return KrlValue::Place(place(text, &fields));
     } else if POSE.into_iter().any(has) {
         pose(&fields, axes)
     } else if fields.axes(b'A') > 0 {
         joints(&fields, axes)
     } else {
-        return Value::Other;
+        return KrlValue::Other;
     };
-    found.unwrap_or_else(Value::Broken)
+    found.unwrap_or_else(KrlValue::Broken)
 }
 
 /// Fields of a frame.
@@ -277,17 +287,17 @@ fn bits(text: &[u8], tokens: &[Token]) -> Option<Number> {
     Some(Number { range: token.range.clone(), value: f64::from(value), decimals: 0, scale: 1.0 })
 }
 
-fn place(text: &[u8], fields: &Fields<'_>) -> Place {
+fn place(text: &[u8], fields: &AggregateFields<'_>) -> ToolAndBase {
     let number = |name: &str| {
         let number = fields.get(name)?.0?;
         (number.value.fract() == 0.0).then_some(number.value as i64)
     };
     let mode = fields.get("IPO_FRAME");
     let is_external = mode.is_some_and(|it| !it.1.iter().any(|word| word.is_word(text, "BASE")));
-    Place { tool: number("TOOL_NO"), base: number("BASE_NO"), is_external }
+    ToolAndBase { tool: number("TOOL_NO"), base: number("BASE_NO"), is_external }
 }
 
-fn pose(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
+fn pose(fields: &AggregateFields<'_>, axes: &ControllerAxes) -> Result<KrlValue, &'static str> {
     let number = |name: &str| fields.number(name, reason::PARTIAL);
     let mut numbers = POSE.into_iter().map(number).collect::<Result<Vec<_>, _>>()?;
     if fields.has_external(axes, &[]) {
@@ -308,10 +318,10 @@ fn pose(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
             numbers.push(Number { scale: 1e-3, ..number });
         }
     }
-    Ok(Value::Pose(numbers, Status { status: words[0], turn: words[1] }))
+    Ok(KrlValue::Pose(numbers, Status { status: words[0], turn: words[1] }))
 }
 
-fn joints(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
+fn joints(fields: &AggregateFields<'_>, axes: &ControllerAxes) -> Result<KrlValue, &'static str> {
     if fields.has_external(axes, &axes.names) {
         return Err(reason::EXTERNAL);
     }
@@ -335,5 +345,5 @@ fn joints(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
     let is_own =
         |&it: &usize| if is_named { is_axis(&names[it], b'A') } else { !axes.external.contains(&it) };
     let own = (0..axes.count()).filter(is_own).count();
-    if fields.axes(b'A') == own { Ok(Value::Joints(numbers)) } else { Err(reason::COUNT) }
+    if fields.axes(b'A') == own { Ok(KrlValue::Joints(numbers)) } else { Err(reason::COUNT) }
 }

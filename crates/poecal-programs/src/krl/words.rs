@@ -1,13 +1,13 @@
 //! Words of the language.
 
-use crate::scan::Rules;
+use crate::scan::LexicalRules;
 
-pub(crate) const RULES: Rules =
-    Rules { comments: &[";"], quotes: b"\"'", letters: b"$", is_open_in_brackets: false };
+pub(crate) const RULES: LexicalRules =
+    LexicalRules { comments: &[";"], quotes: b"\"'", letters: b"$", is_open_in_brackets: false };
 
 /// Path of a motion to its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum KrlMotionType {
     /// All axes at once.
     Joints,
     /// A line, an arc or a curve.
@@ -17,18 +17,18 @@ pub(crate) enum Way {
 }
 
 /// Statements that move the robot.
-pub(crate) const MOTIONS: [(&str, Way); 13] = [
-    ("PTP", Way::Joints),
-    ("SPTP", Way::Joints),
-    ("LIN", Way::Straight),
-    ("SLIN", Way::Straight),
-    ("CIRC", Way::Straight),
-    ("SCIRC", Way::Straight),
-    ("SPL", Way::Straight),
-    ("PTP_REL", Way::Relative),
-    ("LIN_REL", Way::Relative),
-    ("CIRC_REL", Way::Relative),
-    ("SPTP_REL", Way::Relative),
-    ("SLIN_REL", Way::Relative),
-    ("SCIRC_REL", Way::Relative),
+pub(crate) const MOTIONS: [(&str, KrlMotionType); 13] = [
+    ("PTP", KrlMotionType::Joints),
+    ("SPTP", KrlMotionType::Joints),
+    ("LIN", KrlMotionType::Straight),
+    ("SLIN", KrlMotionType::Straight),
+    ("CIRC", KrlMotionType::Straight),
+    ("SCIRC", KrlMotionType::Straight),
+    ("SPL", KrlMotionType::Straight),
+    ("PTP_REL", KrlMotionType::Relative),
+    ("LIN_REL", KrlMotionType::Relative),
+    ("CIRC_REL", KrlMotionType::Relative),
+    ("SPTP_REL", KrlMotionType::Relative),
+    ("SLIN_REL", KrlMotionType::Relative),
+    ("SCIRC_REL", KrlMotionType::Relative),
 ];

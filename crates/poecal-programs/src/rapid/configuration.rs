@@ -11,7 +11,7 @@ use super::super::posture::{MARGIN, Posture};
 /// A joint with quarter turn c is at `[c, c + 1)·90°`. The branch is a sum of 4 if the wrist centre is behind the first axis, 2 if it is behind the
 /// lower arm, and 1 for a negative angle of the fifth joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Configuration {
+pub struct RapidConfiguration {
     /// Quarter turns cf1, cf4, cf6.
     pub(crate) quarters: [i32; 3],
     /// Branch cfx.
@@ -23,7 +23,7 @@ const JOINTS: [usize; 3] = [0, 3, 5];
 /// Angle (rad) beyond a border that is attributed to rounding of written numbers.
 const ROUNDING: f64 = 1e-6;
 
-impl Configuration {
+impl RapidConfiguration {
     /// True if the quarter turns of a configuration of the nominal arm (rad) fit, borders included.
     pub(crate) fn fits(&self, q: &[f64]) -> bool {
         q.len() == 6
@@ -37,7 +37,7 @@ impl Configuration {
         let Some(posture) = Posture::new(nominal).filter(|_| (0..8).contains(&self.branch)) else {
             return true;
         };
-        let bent = posture.at(q);
+        let bent = posture.bends_at(q);
         let agrees = |found: Option<bool>, bit: i32| found.is_none_or(|it| it == (self.branch & bit == 0));
         agrees(bent.is_front, 4)
             && agrees(bent.is_wrist_positive, 1)

@@ -2,15 +2,15 @@
 
 use super::super::scan::{Token, is_one_of};
 use super::moves::{Instruction, layout};
-use super::outline::Outline;
+use super::outline::RapidOutline;
 use super::tokens::ASSIGN;
 
 /// A modal state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Switch {
+pub(crate) enum ModalSwitch {
     /// Targets are displaced (`PDispOn`, `PDispSet`).
     Displacement,
-    /// The robot does not take the stated configuration on lines and arcs (`ConfL\Off`).
+    /// The robot does not take the stated configuration on lines and arcs (`ConfL\EllipseDistance`).
     Lines,
     /// The robot does not take it in joint motions (`ConfJ\Off`).
     Joints,
@@ -18,16 +18,16 @@ pub(crate) enum Switch {
 
 /// Range in which a state is on: for each statement, the line that switched it on.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Modal {
+pub(crate) struct ModalState {
     on: Vec<Option<usize>>,
     everywhere: Option<usize>,
 }
 
-impl Modal {
+impl ModalState {
     /// Follows a state through a file. It is off at the beginning of a routine. If it may be on at the end of a block, or is on while other
     /// routines are called, it may be on everywhere.
-    pub(crate) fn follow(switch: Switch, outline: &Outline, tokens: &[Token], text: &[u8]) -> Self {
-        let mut out = Modal { on: vec![None; outline.statements.len()], everywhere: None };
+    pub(crate) fn follow(switch: ModalSwitch, outline: &RapidOutline, tokens: &[Token], text: &[u8]) -> Self {
+        let mut out = ModalState { on: vec![None; outline.statements.len()], everywhere: None };
         // Line and block of the instruction that switched it on.
         let mut on: Option<(usize, usize)> = None;
         let (mut routine, mut handler) = (None, 0);
@@ -35,7 +35,7 @@ impl Modal {
             *all = all.or(on.map(|(line, _)| line));
         };
         for (index, statement) in outline.statements.iter().enumerate() {
-            let outermost = outline.outermost(statement.block);
+            let outermost = outline.outermost_block(statement.block);
             if statement.routine != routine || outermost != handler {
                 everywhere(&mut out.everywhere, on.take());
                 (routine, handler) = (statement.routine, outermost);
@@ -43,7 +43,7 @@ impl Modal {
             everywhere(&mut out.everywhere, on.filter(|(_, block)| !outline.is_in(statement.block, *block)));
             let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
             let instruction = Instruction::from_tokens(own, text);
-            match instruction.as_ref().and_then(|it| switched(switch, it)) {
+            match instruction.as_ref().and_then(|it| switch_state(switch, it)) {
                 Some(true) => {
                     on.get_or_insert((statement.line, statement.block));
                 }
@@ -65,13 +65,13 @@ impl Modal {
     }
 
     /// The line that may have switched it on at a statement.
-    pub(crate) fn at(&self, index: usize) -> Option<usize> {
+    pub(crate) fn switched_at(&self, index: usize) -> Option<usize> {
         self.on.get(index).copied().flatten().or(self.everywhere)
     }
 }
 
 /// True if an instruction switches it on, false if off; `None` if neither.
-fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
+fn switch_state(switch: ModalSwitch, instruction: &Instruction<'_>) -> Option<bool> {
     let of = |name: &str| {
         if instruction.name != name {
             return None;
@@ -83,11 +83,11 @@ fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
         }
     };
     match (switch, instruction.name.as_str()) {
-        (Switch::Displacement, "pdispon" | "pdispset") => Some(true),
-        (Switch::Displacement, "pdispoff") => Some(false),
-        (Switch::Displacement, _) => None,
-        (Switch::Lines, _) => of("confl"),
-        (Switch::Joints, _) => of("confj"),
+        (ModalSwitch::Displacement, "pdispon" | "pdispset") => Some(true),
+        (ModalSwitch::Displacement, "pdispoff") => Some(false),
+        (ModalSwitch::Displacement, _) => None,
+        (ModalSwitch::Lines, _) => of("confl"),
+        (ModalSwitch::Joints, _) => of("confj"),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::super::scan::{Kind, Token, bracket, cut, is_one_of};
-use super::tokens::lower;
+use super::super::scan::{Token, TokenKind, bracket, cut, is_one_of};
+use super::tokens::lower_case;
 
 /// A statement that ends with a semicolon, and its position in the outline.
 #[derive(Clone, Debug)]
-pub(crate) struct Statement {
+pub(crate) struct RapidStatement {
     /// Its tokens, without the semicolon.
     pub(crate) tokens: Range<usize>,
     pub(crate) line: usize,
@@ -29,41 +29,44 @@ pub(crate) struct Routine {
 
 /// A file by its statements.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Outline {
-    pub(crate) statements: Vec<Statement>,
+pub(crate) struct RapidOutline {
+    pub(crate) statements: Vec<RapidStatement>,
     pub(crate) routines: Vec<Routine>,
     /// Blocks, each after the one around it.
-    pub(crate) blocks: Vec<Block>,
+    pub(crate) blocks: Vec<StatementBlock>,
 }
 
 /// A block of statements: a routine's own, or a branch, a loop, a handler of errors in it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Block {
+pub(crate) struct StatementBlock {
     /// The outermost block around it.
     outermost: usize,
     /// The first block after it and those within.
     end: usize,
 }
 
-impl Outline {
+impl RapidOutline {
     /// True if a block is another one or is inside it.
     pub(crate) fn is_in(&self, block: usize, other: usize) -> bool {
         block >= other && self.blocks.get(other).is_some_and(|it| block < it.end)
     }
 
     /// The outermost block around a block.
-    pub(crate) fn outermost(&self, block: usize) -> usize {
+    pub(crate) fn outermost_block(&self, block: usize) -> usize {
         self.blocks.get(block).map_or(block, |it| it.outermost)
     }
 }
 
 /// Reads a file's statements; heads of routines, loops and branches, which are no statements, only determine positions of statements.
-pub(crate) fn outline(tokens: &[Token], text: &[u8]) -> Outline {
-    let reader = Reader {
+pub(crate) fn outline(tokens: &[Token], text: &[u8]) -> RapidOutline {
+    let reader = OutlineReader {
         tokens,
         text,
         at: 0,
-        out: Outline { blocks: vec![Block { outermost: 0, end: 1 }], ..Outline::default() },
+        out: RapidOutline {
+            blocks: vec![StatementBlock { outermost: 0, end: 1 }],
+            ..RapidOutline::default()
+        },
         open: vec![0],
         routine: None,
         module: 0,
@@ -72,11 +75,11 @@ pub(crate) fn outline(tokens: &[Token], text: &[u8]) -> Outline {
     reader.all()
 }
 
-struct Reader<'a> {
+struct OutlineReader<'a> {
     tokens: &'a [Token],
     text: &'a [u8],
     at: usize,
-    out: Outline,
+    out: RapidOutline,
     /// Open blocks, the innermost last.
     open: Vec<usize>,
     routine: Option<usize>,
@@ -84,9 +87,9 @@ struct Reader<'a> {
     is_entry: bool,
 }
 
-impl Reader<'_> {
+impl OutlineReader<'_> {
     fn word(&self, at: usize) -> Option<String> {
-        self.tokens.get(at).filter(|it| it.kind == Kind::Word).map(|it| lower(self.text, it))
+        self.tokens.get(at).filter(|it| it.kind == TokenKind::Word).map(|it| lower_case(self.text, it))
     }
 
     fn is_word(&self, at: usize, words: &str) -> bool {
@@ -97,7 +100,7 @@ impl Reader<'_> {
         self.tokens.get(at).is_some_and(|it| it.is(sign))
     }
 
-    fn all(mut self) -> Outline {
+    fn all(mut self) -> RapidOutline {
         while self.at < self.tokens.len() {
             self.next();
         }
@@ -186,8 +189,8 @@ impl Reader<'_> {
         self.is_entry = true;
         let block = self.out.blocks.len();
         let around = self.open.last().copied().filter(|it| *it != 0);
-        let outermost = around.map_or(block, |it| self.out.outermost(it));
-        self.out.blocks.push(Block { outermost, end: usize::MAX });
+        let outermost = around.map_or(block, |it| self.out.outermost_block(it));
+        self.out.blocks.push(StatementBlock { outermost, end: usize::MAX });
         self.open.push(block);
     }
 
@@ -224,8 +227,8 @@ impl Reader<'_> {
         for part in cut(inner, b',').unwrap_or_default() {
             // Parameters are like `\switch a | switch b`, `VAR num x{*}`: the last word of each is the name.
             for one in part.split(|it| it.is(b'|')) {
-                let words = one.iter().take_while(|it| !it.is(b'{')).filter(|it| it.kind == Kind::Word);
-                parameters.extend(words.last().map(|it| lower(self.text, it)));
+                let words = one.iter().take_while(|it| !it.is(b'{')).filter(|it| it.kind == TokenKind::Word);
+                parameters.extend(words.last().map(|it| lower_case(self.text, it)));
             }
         }
         self.routine = Some(self.out.routines.len());
@@ -250,9 +253,9 @@ impl Reader<'_> {
                 }
                 let is_operator = |word: &str| is_one_of("and or xor not div mod if", word);
                 let follows_value = self.tokens.get(at - 1).is_some_and(|before| match before.kind {
-                    Kind::Word => !is_operator(&lower(self.text, before)),
-                    Kind::Number(..) | Kind::Text | Kind::Sign(b')' | b'}' | b']') => true,
-                    Kind::Sign(_) | Kind::LineEnd => false,
+                    TokenKind::Word => !is_operator(&lower_case(self.text, before)),
+                    TokenKind::Number(..) | TokenKind::Text | TokenKind::Sign(b')' | b'}' | b']') => true,
+                    TokenKind::Sign(_) | TokenKind::LineEnd => false,
                 });
                 if start.is_none() && follows_value && !is_operator(&word) {
                     start = Some(at);
@@ -268,7 +271,7 @@ impl Reader<'_> {
     fn statement(&mut self, start: usize) {
         let rest = self.tokens.get(start..).unwrap_or_default();
         let end = start + rest.iter().position(|it| it.is(b';')).unwrap_or(rest.len());
-        self.out.statements.push(Statement {
+        self.out.statements.push(RapidStatement {
             tokens: start..end,
             line: self.tokens.get(start).map_or(0, |it| it.line),
             routine: self.routine,

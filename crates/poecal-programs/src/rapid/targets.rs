@@ -2,33 +2,33 @@
 
 use std::collections::HashMap;
 
-use super::super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};
+use super::super::axes::{ControllerAxes, NO_EXTERNAL, OTHER_EXTERNAL};
 use super::super::forms::PoseForm;
-use super::super::given::Given;
-use super::super::parsed::{Meant, Motion, Number, Parsed, Target};
-use super::super::stated::Stated;
-use super::configuration::Configuration;
-use super::declared::{Data, Declared, Sort};
+use super::super::parsed_program::{Number, ParsedProgram, PoseMeaning, ProgramMotion, ProgramTarget};
+use super::super::stated_configuration::StatedConfiguration;
+use super::super::stated_frames::StatedFrames;
+use super::configuration::RapidConfiguration;
+use super::declarations::{DataDeclaration, Declarations, RapidDataKind};
 use super::frames::{has_length, tool, work_object};
-use super::going::{Held, Move, Moves, To};
-use super::outline::Outline;
-use super::tokens::Value;
+use super::move_sequence::{MoveFrame, RapidMove, RapidMoves, TargetReference};
+use super::outline::RapidOutline;
+use super::tokens::RapidValue;
 use poecal_arm::lie::Pose;
 
 /// Targets, motions and reasons.
 pub(crate) fn parsed(
-    moves: &Moves,
-    declared: &Declared,
-    outline: &Outline,
-    (given, axes): (&Given, &Axes),
+    moves: &RapidMoves,
+    declared: &Declarations,
+    outline: &RapidOutline,
+    (given, axes): (&StatedFrames, &ControllerAxes),
     text: &[u8],
-) -> Parsed {
+) -> ParsedProgram {
     let lines = text.iter().enumerate().filter(|(_, it)| **it == b'\n').map(|(at, _)| at).collect();
-    let mut by_place: HashMap<&To, Vec<usize>> = HashMap::new();
+    let mut by_place: HashMap<&TargetReference, Vec<usize>> = HashMap::new();
     for (number, going) in moves.going.iter().enumerate() {
         by_place.entry(&going.to).or_default().push(number);
     }
-    let mut maker = Maker {
+    let mut maker = RapidBuilder {
         moves,
         by_place,
         declared,
@@ -38,43 +38,43 @@ pub(crate) fn parsed(
         lines,
         motions: vec![None; moves.going.len()],
         more: Vec::new(),
-        out: Parsed::default(),
+        out: ParsedProgram::default(),
     };
     for (at, data) in declared.data.iter().enumerate() {
-        if matches!(data.sort, Sort::Target | Sort::Joints)
+        if matches!(data.sort, RapidDataKind::Target | RapidDataKind::Joints)
             && let Some(value) = &data.value
         {
             maker.data(at, data, value);
         }
     }
     for (at, (name, value, is_joints)) in moves.in_place.iter().enumerate() {
-        maker.one(name.clone(), 0, value, *is_joints, &To::InPlace(at));
+        maker.read_value(name.clone(), 0, value, *is_joints, &TargetReference::InPlace(at));
     }
     maker.parsed()
 }
 
 /// Tool and frame of a motion.
-type Known = (Pose, Pose);
+type MotionSettings = (Pose, Pose);
 
-struct Maker<'a> {
-    moves: &'a Moves,
-    by_place: HashMap<&'a To, Vec<usize>>,
-    declared: &'a Declared,
-    outline: &'a Outline,
-    given: &'a Given,
-    axes: &'a Axes,
+struct RapidBuilder<'a> {
+    moves: &'a RapidMoves,
+    by_place: HashMap<&'a TargetReference, Vec<usize>>,
+    declared: &'a Declarations,
+    outline: &'a RapidOutline,
+    given: &'a StatedFrames,
+    axes: &'a ControllerAxes,
     /// Ends of lines.
     lines: Vec<usize>,
     /// Motion of each move.
-    motions: Vec<Option<Motion>>,
+    motions: Vec<Option<ProgramMotion>>,
     /// Motions to any element of an array.
-    more: Vec<Motion>,
-    out: Parsed,
+    more: Vec<ProgramMotion>,
+    out: ParsedProgram,
 }
 
-impl Maker<'_> {
-    fn data(&mut self, at: usize, data: &Data, value: &Value) {
-        let is_joints = data.sort == Sort::Joints;
+impl RapidBuilder<'_> {
+    fn data(&mut self, at: usize, data: &DataDeclaration, value: &RapidValue) {
+        let is_joints = data.sort == RapidDataKind::Joints;
         let reason = match (data.is_double, data.changed, data.given.first()) {
             (true, ..) => Some("declared more than once".to_owned()),
             (_, Some(line), _) => Some(format!("changed by the program on line {line}")),
@@ -92,22 +92,31 @@ impl Maker<'_> {
                 [] => data.name.clone(),
                 _ => format!("{}{{{}}}", data.name, words.join(",")),
             };
-            self.one(name, data.line, value, is_joints, &To::Data(at, index));
+            self.read_value(name, data.line, value, is_joints, &TargetReference::Data(at, index));
         }
     }
 
     /// Adds a target by its value and its position.
-    fn one(&mut self, name: String, line: usize, value: &Value, is_joints: bool, to: &To) {
+    fn read_value(
+        &mut self,
+        name: String,
+        line: usize,
+        value: &RapidValue,
+        is_joints: bool,
+        to: &TargetReference,
+    ) {
         let line = first_number(value).map_or(line, |at| self.lines.partition_point(|end| *end < at) + 1);
         let own = self.by_place.get(to).cloned().unwrap_or_default();
-        let any: &[Move] = match to {
-            To::Data(at, index) if !index.is_empty() => self.moves.to_any.get(at).map_or(&[], |it| it),
-            To::Data(..) | To::InPlace(_) => &[],
+        let any: &[RapidMove] = match to {
+            TargetReference::Data(at, index) if !index.is_empty() => {
+                self.moves.to_any.get(at).map_or(&[], |it| it)
+            }
+            TargetReference::Data(..) | TargetReference::InPlace(_) => &[],
         };
-        let moves: Vec<&Move> =
+        let moves: Vec<&RapidMove> =
             own.iter().filter_map(|&it| Some(&self.moves.going.get(it)?.of)).chain(any).collect();
         let made = if is_joints {
-            joints(value, self.axes).map(|it| (it, Meant::Joints, Vec::new()))
+            joints(value, self.axes).map(|it| (it, PoseMeaning::Joints, Vec::new()))
         } else {
             self.pose(value, &moves)
         };
@@ -119,26 +128,30 @@ impl Maker<'_> {
         let stated = configuration(numbers.get(7..11).unwrap_or_default());
         if let (true, Some((tool, frame))) = (moves.is_empty(), known.first().copied()) {
             let (tool, frame, stated) = (Some(tool), Some(frame), stated.clone());
-            self.more.push(Motion { tool, frame, stated, ..Motion::to(target, line) });
+            self.more.push(ProgramMotion { tool, frame, stated, ..ProgramMotion::from_target(target, line) });
         }
         for (number, of) in moves.iter().enumerate() {
             let known = known.get(number);
-            let motion = Motion {
+            let motion = ProgramMotion {
                 is_straight: of.is_straight,
                 tool: known.map(|it| it.0),
                 frame: known.map(|it| it.1),
-                stated: if of.is_not_followed { Stated::Nothing } else { stated.clone() },
-                ..Motion::to(target, of.line)
+                stated: if of.is_not_followed { StatedConfiguration::Nothing } else { stated.clone() },
+                ..ProgramMotion::from_target(target, of.line)
             };
             match own.get(number).and_then(|&it| self.motions.get_mut(it)) {
                 Some(place) => *place = Some(motion),
                 None => self.more.push(motion),
             }
         }
-        self.out.targets.push(Target { line, name, numbers, meant });
+        self.out.targets.push(ProgramTarget { line, name, numbers, meant });
     }
 
-    fn pose(&self, value: &Value, moves: &[&Move]) -> Result<(Vec<Number>, Meant, Vec<Known>), String> {
+    fn pose(
+        &self,
+        value: &RapidValue,
+        moves: &[&RapidMove],
+    ) -> Result<(Vec<Number>, PoseMeaning, Vec<MotionSettings>), String> {
         const SHAPE: &str =
             "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
         let Some([place, quaternion, configuration, external]) = value.list(4) else {
@@ -184,54 +197,62 @@ impl Maker<'_> {
         all.extend(quaternion);
         all.extend(configuration);
         all.extend(external);
-        Ok((all, Meant::Pose(PoseForm::Quaternion), known))
+        Ok((all, PoseMeaning::Pose(PoseForm::Quaternion), known))
     }
 
-    fn tool(&self, held: &Held) -> Result<Pose, String> {
-        self.known(
+    fn tool(&self, held: &MoveFrame) -> Result<Pose, String> {
+        self.known_pose(
             ("tool", "--tool-data"),
             held,
-            Sort::Tool,
+            RapidDataKind::Tool,
             self.given.tool(Some(self.name(held, "tool0"))),
             tool,
         )
     }
 
-    fn frame(&self, held: &Held) -> Result<Pose, String> {
+    fn frame(&self, held: &MoveFrame) -> Result<Pose, String> {
         let stated = self.given.frame(Some(self.name(held, "wobj0")));
-        self.known(("work object", "--work-object"), held, Sort::WorkObject, stated, work_object)
+        self.known_pose(
+            ("work object", "--work-object"),
+            held,
+            RapidDataKind::WorkObject,
+            stated,
+            work_object,
+        )
     }
 
-    fn name<'b>(&'b self, held: &'b Held, built_in: &'b str) -> &'b str {
+    fn name<'b>(&'b self, held: &'b MoveFrame, built_in: &'b str) -> &'b str {
         match held {
-            Held::BuiltIn => built_in,
-            Held::Data(at) => self.declared.data.get(*at).map_or("", |it| it.name.as_str()),
-            Held::Unknown(written) => written,
+            MoveFrame::BuiltIn => built_in,
+            MoveFrame::Data(at) => self.declared.data.get(*at).map_or("", |it| it.name.as_str()),
+            MoveFrame::Unknown(written) => written,
         }
     }
 
     /// A tool or a work object: as stated by the user, else as declared in the file.
-    fn known(
+    fn known_pose(
         &self,
         (what, flag): (&str, &str),
-        held: &Held,
-        sort: Sort,
+        held: &MoveFrame,
+        sort: RapidDataKind,
         stated: Option<Pose>,
-        read: fn(&Value) -> Result<Pose, &'static str>,
+        read: fn(&RapidValue) -> Result<Pose, &'static str>,
     ) -> Result<Pose, String> {
         if let Some(stated) = stated {
             return Ok(stated);
         }
         let name = self.name(held, "");
         match held {
-            Held::BuiltIn => Ok(Pose::identity()),
-            Held::Unknown(_)
+            MoveFrame::BuiltIn => Ok(Pose::identity()),
+            MoveFrame::Unknown(_)
                 if name.bytes().any(|it| it.is_ascii_punctuation() && it != b'_') || name.is_empty() =>
             {
                 Err(format!("its {what} `{name}` is not known"))
             }
-            Held::Unknown(_) => Err(format!("its {what} `{name}` is not in this file: state it by {flag}")),
-            Held::Data(at) => {
+            MoveFrame::Unknown(_) => {
+                Err(format!("its {what} `{name}` is not in this file: state it by {flag}"))
+            }
+            MoveFrame::Data(at) => {
                 let data = self.declared.data.get(*at).filter(|it| it.sort == sort && !it.is_double);
                 let data = data.ok_or_else(|| format!("its {what} `{name}` is not known"))?;
                 if let Some(line) = data.changed {
@@ -250,7 +271,7 @@ impl Maker<'_> {
         }
     }
 
-    fn parsed(mut self) -> Parsed {
+    fn parsed(mut self) -> ParsedProgram {
         // Numbers of motions, without moves that have none.
         let mut place = Vec::with_capacity(self.motions.len());
         let mut count = 0;
@@ -263,7 +284,7 @@ impl Maker<'_> {
             // A stated configuration that is followed does not depend on the motion before.
             let after = going.after.filter(|_| going.of.is_not_followed);
             let after = after.and_then(|it| place.get(it).copied().flatten());
-            motions.extend(motion.map(|motion| Motion { after, ..motion }));
+            motions.extend(motion.map(|motion| ProgramMotion { after, ..motion }));
         }
         motions.extend(self.more);
         self.out.motions = motions;
@@ -272,10 +293,12 @@ impl Maker<'_> {
 }
 
 /// The configuration `[cf1,cf4,cf6,cfx]`.
-fn configuration(numbers: &[Number]) -> Stated {
+fn configuration(numbers: &[Number]) -> StatedConfiguration {
     match numbers.iter().map(|it| it.value as i32).collect::<Vec<i32>>()[..] {
-        [cf1, cf4, cf6, branch] => Stated::Rapid(Configuration { quarters: [cf1, cf4, cf6], branch }),
-        _ => Stated::Nothing,
+        [cf1, cf4, cf6, branch] => {
+            StatedConfiguration::Rapid(RapidConfiguration { quarters: [cf1, cf4, cf6], branch })
+        }
+        _ => StatedConfiguration::Nothing,
     }
 }
 
@@ -283,7 +306,7 @@ fn configuration(numbers: &[Number]) -> Stated {
 const NONE: f64 = 8.9e9;
 
 /// The external axes of the model, mm; others must be absent, or at 0, where they do not affect the arm.
-fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, String> {
+fn external_axes(mut numbers: Vec<Number>, axes: &ControllerAxes) -> Result<Vec<Number>, String> {
     let others = numbers.split_off(axes.external.len().min(numbers.len()));
     if others.iter().any(|it| it.value != 0.0 && it.value < NONE) {
         return Err(OTHER_EXTERNAL.to_owned());
@@ -296,7 +319,7 @@ fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, S
 }
 
 /// The joints `[[six angles in degrees],[external axes]]`. External axes that the model lacks do not change the arm's joint positions.
-fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
+fn joints(value: &RapidValue, axes: &ControllerAxes) -> Result<Vec<Number>, String> {
     const SHAPE: &str = "not written as [[six angles],[external axes]] with numbers";
     let Some([arm, external]) = value.list(2) else { return Err(SHAPE.to_owned()) };
     let mut arm = arm.numbers(6).ok_or(SHAPE)?;
@@ -307,17 +330,17 @@ fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
         return Err("has no angles of the arm".to_owned());
     }
     arm.iter_mut().for_each(|it| it.scale = 1_f64.to_radians());
-    axes.joined(&arm, &external).ok_or_else(|| SHAPE.to_owned())
+    axes.join_readings(&arm, &external).ok_or_else(|| SHAPE.to_owned())
 }
 
 /// The elements of an array with this number of dimensions.
 fn spread<'a>(
-    value: &'a Value,
+    value: &'a RapidValue,
     dimensions: usize,
     index: &mut Vec<usize>,
-    out: &mut Vec<(Vec<usize>, &'a Value)>,
+    out: &mut Vec<(Vec<usize>, &'a RapidValue)>,
 ) {
-    if let Value::List(values) = value
+    if let RapidValue::List(values) = value
         && dimensions > 0
     {
         for (at, value) in values.iter().enumerate() {
@@ -331,10 +354,10 @@ fn spread<'a>(
 }
 
 /// The first byte of the first number of a value.
-fn first_number(value: &Value) -> Option<usize> {
+fn first_number(value: &RapidValue) -> Option<usize> {
     match value {
-        Value::Number(number) => Some(number.range.start),
-        Value::List(values) => values.iter().find_map(first_number),
-        Value::Word(_) | Value::Text(_) | Value::Other => None,
+        RapidValue::Number(number) => Some(number.range.start),
+        RapidValue::List(values) => values.iter().find_map(first_number),
+        RapidValue::Word(_) | RapidValue::Text(_) | RapidValue::Other => None,
     }
 }

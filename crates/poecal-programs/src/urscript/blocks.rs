@@ -1,19 +1,19 @@
 //! Blocks of URScript: routines, threads, loops and branches.
 
-use super::super::build::Blocks;
-use super::super::flow::Node;
-use super::super::parsed::Setting;
-use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, outside};
-use super::Step;
+use super::super::build::ProgramBlocks;
+use super::super::flow::FlowNode;
+use super::super::parsed_program::ActiveFrame;
+use super::super::scan::{LexicalRules, Scanner, Token, TokenKind, bracket, is_one_of, outside_brackets};
+use super::UrScriptStep;
 use poecal_numerics::error::Result;
 
 /// Makes nodes of a statement.
-type Make<'m> = &'m mut dyn FnMut(&[Token], &mut Vec<Node<Step>>);
+type NodeMaker<'m> = &'m mut dyn FnMut(&[Token], &mut Vec<FlowNode<UrScriptStep>>);
 
 /// A program in its blocks.
 pub(crate) struct Program {
-    pub(crate) main: Vec<Node<Step>>,
-    pub(crate) blocks: Blocks<Step>,
+    pub(crate) main: Vec<FlowNode<UrScriptStep>>,
+    pub(crate) blocks: ProgramBlocks<UrScriptStep>,
     /// True if a thread moves the robot.
     pub(crate) threads_move: bool,
     /// True if a thread sets the tool.
@@ -26,8 +26,8 @@ pub(crate) struct Program {
 pub(crate) fn cut<'t>(text: &[u8], line: &'t [Token]) -> Vec<&'t [Token]> {
     let mut out = Vec::new();
     let mut start = 0;
-    for (at, token) in outside(line) {
-        let word = if token.kind == Kind::Word { token.text(text) } else { "" };
+    for (at, token) in outside_brackets(line) {
+        let word = if token.kind == TokenKind::Word { token.text(text) } else { "" };
         let is_header = line.get(start).is_some_and(|it| is_one_of(HEADERS, it.text(text)));
         if token.is(b';') || is_one_of("end else elif", word) && at > start {
             out.push(&line[start..at]);
@@ -58,8 +58,8 @@ pub(crate) fn header<'t>(text: &'t [u8], tokens: &'t [Token]) -> Option<(&'t str
 
 impl Program {
     /// Reads a text; `make` makes nodes of each statement and of each condition.
-    pub(crate) fn read(text: &[u8], rules: &Rules, make: Make<'_>) -> Result<Self> {
-        let blocks = Blocks::new();
+    pub(crate) fn read(text: &[u8], rules: &LexicalRules, make: NodeMaker<'_>) -> Result<Self> {
+        let blocks = ProgramBlocks::new();
         let mut program =
             Program { main: Vec::new(), blocks, threads_move: false, threads_set: false, thread: None };
         let mut scanner = Scanner::new(text, rules);
@@ -73,7 +73,7 @@ impl Program {
         Ok(program)
     }
 
-    fn statement(&mut self, text: &[u8], tokens: &[Token], make: Make<'_>) -> Result<()> {
+    fn statement(&mut self, text: &[u8], tokens: &[Token], make: NodeMaker<'_>) -> Result<()> {
         let Some(first) = tokens.first() else { return Ok(()) };
         let (word, line) = (first.text(text), first.line);
         if let Some((name, _)) = header(text, tokens) {
@@ -82,7 +82,7 @@ impl Program {
             if word == "thread" {
                 // It runs in parallel with the program, which may have set any tool.
                 self.thread.get_or_insert(depth);
-                self.blocks.push([Node::Step(Step::Tool(Setting::Unknown))]);
+                self.blocks.push([FlowNode::Step(UrScriptStep::Tool(ActiveFrame::Unknown))]);
             }
             return Ok(());
         }
@@ -103,7 +103,7 @@ impl Program {
             "elif" | "else" => {
                 self.blocks.arm(word == "else");
                 // A condition with effects has already run when a later one is evaluated.
-                let label = (!nodes.is_empty()).then_some(Node::Label);
+                let label = (!nodes.is_empty()).then_some(FlowNode::Label);
                 self.blocks.push(nodes.into_iter().chain(label));
             }
             "end" => {
@@ -111,24 +111,24 @@ impl Program {
                 self.thread = self.thread.filter(|it| self.blocks.depth() > *it);
             }
             "break" | "continue" | "return" | "halt" => {
-                self.blocks.push(nodes.into_iter().chain([Node::Leave]));
+                self.blocks.push(nodes.into_iter().chain([FlowNode::Leave]));
             }
             _ => self.blocks.push(nodes),
         }
         Ok(())
     }
 
-    fn note_threads(&mut self, nodes: &[Node<Step>]) {
+    fn note_threads(&mut self, nodes: &[FlowNode<UrScriptStep>]) {
         if self.thread.is_none() {
             return;
         }
         for node in nodes {
             match node {
-                Node::Step(Step::Tool(_) | Step::Moving(_)) => self.threads_set = true,
-                Node::Step(Step::Move { .. } | Step::Away) => self.threads_move = true,
+                FlowNode::Step(UrScriptStep::Tool(_) | UrScriptStep::Moving(_)) => self.threads_set = true,
+                FlowNode::Step(UrScriptStep::Move { .. } | UrScriptStep::Away) => self.threads_move = true,
                 // The called routine is not examined.
-                Node::Call(_) => (self.threads_set, self.threads_move) = (true, true),
-                Node::Either(_) | Node::Loop(_) | Node::Leave | Node::Label => {}
+                FlowNode::Call(_) => (self.threads_set, self.threads_move) = (true, true),
+                FlowNode::Either(_) | FlowNode::Loop(_) | FlowNode::Leave | FlowNode::Label => {}
             }
         }
     }

@@ -7,64 +7,64 @@ mod values;
 
 use std::collections::BTreeSet;
 
-use super::axes::Axes;
-use super::flow::{Node, State, Walk};
+use super::axes::ControllerAxes;
+use super::flow::{FlowNode, FlowState, FlowWalk};
 use super::forms::PoseForm;
-use super::given::Given;
-use super::parsed::{Meant, Motion, Number, Parsed, Setting, Target};
-use super::scan::{Kind, Rules, Token, bracket, is_one_of, parts, shown};
-use super::stated::Stated;
+use super::parsed_program::{ActiveFrame, Number, ParsedProgram, PoseMeaning, ProgramMotion, ProgramTarget};
+use super::scan::{LexicalRules, Token, TokenKind, bracket, excerpt, is_one_of, parts};
+use super::stated_configuration::StatedConfiguration;
+use super::stated_frames::StatedFrames;
 use blocks::Program;
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::Result;
-use step::{Aim, Frame, Step, Way};
-use values::{Value, Variables};
+use step::{MotionArgument, PoseFrame, UrScriptMotionType, UrScriptStep};
+use values::{UrScriptValue, UrScriptVariables};
 
-pub(crate) const RULES: Rules =
-    Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
+pub(crate) const RULES: LexicalRules =
+    LexicalRules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
 
 /// Form of poses in the language.
 const FORM: PoseForm = PoseForm::RotationVector;
 
 /// Statements that move the robot to targets: their name, the indices of the targets among the arguments, and the path.
-const MOTIONS: [(&str, &[usize], Way); 9] = [
-    ("movej", &[0], Way::Joints),
-    ("movel", &[0], Way::Straight),
-    ("movep", &[0], Way::Straight),
-    ("movec", &[0, 1], Way::Straight),
-    ("optimovej", &[0], Way::Joints),
-    ("optimovel", &[0], Way::Straight),
-    ("servoj", &[0], Way::Stream),
-    ("servoc", &[0], Way::Stream),
-    ("mc_add_linear", &[0], Way::Unknown),
+const MOTIONS: [(&str, &[usize], UrScriptMotionType); 9] = [
+    ("movej", &[0], UrScriptMotionType::Joints),
+    ("movel", &[0], UrScriptMotionType::Straight),
+    ("movep", &[0], UrScriptMotionType::Straight),
+    ("movec", &[0, 1], UrScriptMotionType::Straight),
+    ("optimovej", &[0], UrScriptMotionType::Joints),
+    ("optimovel", &[0], UrScriptMotionType::Straight),
+    ("servoj", &[0], UrScriptMotionType::Stream),
+    ("servoc", &[0], UrScriptMotionType::Stream),
+    ("mc_add_linear", &[0], UrScriptMotionType::Unknown),
 ];
 
 /// Statements after which the position of the robot is unknown.
 const AWAY: &str = "speedj speedl freedrive_mode teach_mode force_mode move_until mc_run_motion tool_contact";
 
 /// Targets and motions of a program.
-pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
-    let variables = Variables::from_text(text, &RULES, axes);
-    let mut reader = Reader { text, given, axes, variables, out: Parsed::default() };
+pub(crate) fn parse(text: &[u8], given: &StatedFrames, axes: &ControllerAxes) -> Result<ParsedProgram> {
+    let variables = UrScriptVariables::from_text(text, &RULES, axes);
+    let mut reader = UrScriptReader { text, given, axes, variables, out: ParsedProgram::default() };
     let program = Program::read(text, &RULES, &mut |tokens, nodes| reader.statement(tokens, nodes))?;
     Ok(reader.motions(&program))
 }
 
 /// Reads statements.
-struct Reader<'r> {
+struct UrScriptReader<'r> {
     text: &'r [u8],
-    given: &'r Given,
-    axes: &'r Axes,
-    variables: Variables,
-    out: Parsed,
+    given: &'r StatedFrames,
+    axes: &'r ControllerAxes,
+    variables: UrScriptVariables,
+    out: ParsedProgram,
 }
 
 /// A target of a motion, or the reason why it is none.
-type Found = std::result::Result<Aim, String>;
+type TargetParse = std::result::Result<MotionArgument, String>;
 
-impl Reader<'_> {
+impl UrScriptReader<'_> {
     /// Adds the effects of a statement as nodes.
-    fn statement(&mut self, tokens: &[Token], nodes: &mut Vec<Node<Step>>) {
+    fn statement(&mut self, tokens: &[Token], nodes: &mut Vec<FlowNode<UrScriptStep>>) {
         for (at, token) in tokens.iter().enumerate() {
             let rest = &tokens[at + 1..];
             let Some((inside, _)) = bracket(rest, b'(', b')') else { continue };
@@ -73,7 +73,7 @@ impl Reader<'_> {
             if self.variables.routines.contains(name) {
                 self.arguments(inside);
                 if !is_run {
-                    nodes.push(Node::Call(name.to_owned()));
+                    nodes.push(FlowNode::Call(name.to_owned()));
                 }
                 continue;
             }
@@ -82,35 +82,38 @@ impl Reader<'_> {
                 for &place in *places {
                     let argument = arguments.get(place).copied().unwrap_or(&[]);
                     let step = self.motion(token, argument, *way);
-                    nodes.push(Node::Step(step));
+                    nodes.push(FlowNode::Step(step));
                 }
             } else if name == "set_tcp" {
                 let setting = self.tool(arguments.first().copied().unwrap_or(&[]));
-                nodes.push(Node::Step(Step::Tool(setting)));
+                nodes.push(FlowNode::Step(UrScriptStep::Tool(setting)));
             } else if name.starts_with("track_conveyor") || name == "stop_conveyor_tracking" {
-                nodes.push(Node::Step(Step::Moving(name.starts_with("track"))));
+                nodes.push(FlowNode::Step(UrScriptStep::Moving(name.starts_with("track"))));
             } else if is_one_of(AWAY, name) {
                 if name.starts_with("speed") {
                     self.list(&tokens[at..], token.line, reason::SPEED);
                 }
-                nodes.push(Node::Step(Step::Away));
+                nodes.push(FlowNode::Step(UrScriptStep::Away));
             }
         }
     }
 
     fn list(&mut self, tokens: &[Token], line: usize, reason: &str) {
-        self.out.list(line, shown(self.text, tokens), reason);
+        self.out.list(line, excerpt(self.text, tokens), reason);
     }
 
     /// Lists targets that are passed to a routine.
     fn arguments(&mut self, inside: &[Token]) {
         for argument in parts(inside) {
             let is_target = match self.variables.value(self.text, argument, self.axes) {
-                Value::Pose(_) | Value::Joints(_) => true,
-                Value::Name(name) => {
-                    matches!(self.variables.of_name(&name), Ok(Value::Pose(_) | Value::Joints(_)))
+                UrScriptValue::Pose(_) | UrScriptValue::Joints(_) => true,
+                UrScriptValue::Name(name) => {
+                    matches!(
+                        self.variables.of_name(&name),
+                        Ok(UrScriptValue::Pose(_) | UrScriptValue::Joints(_))
+                    )
                 }
-                Value::Broken(_) | Value::Other => false,
+                UrScriptValue::Broken(_) | UrScriptValue::Other => false,
             };
             if let (true, Some(first)) = (is_target, argument.first()) {
                 self.list(argument, first.line, reason::ARGUMENT);
@@ -118,51 +121,61 @@ impl Reader<'_> {
         }
     }
 
-    fn motion(&mut self, word: &Token, argument: &[Token], way: Way) -> Step {
+    fn motion(&mut self, word: &Token, argument: &[Token], way: UrScriptMotionType) -> UrScriptStep {
         let argument = match argument {
-            [name, sign, rest @ ..] if name.kind == Kind::Word && sign.is(b'=') => rest,
+            [name, sign, rest @ ..] if name.kind == TokenKind::Word && sign.is(b'=') => rest,
             all => all,
         };
-        let found = if way == Way::Unknown { Err(reason::UNKNOWN.to_owned()) } else { self.aim(argument) };
+        let found = if way == UrScriptMotionType::Unknown {
+            Err(reason::UNKNOWN.to_owned())
+        } else {
+            self.aim(argument)
+        };
         match found {
-            Ok(aim) => Step::Move { aim, line: word.line, way },
+            Ok(aim) => UrScriptStep::Move { aim, line: word.line, way },
             Err(reason) => {
                 let tokens = if argument.is_empty() { std::slice::from_ref(word) } else { argument };
                 self.list(tokens, word.line, &reason);
-                Step::Away
+                UrScriptStep::Away
             }
         }
     }
 
     /// The target of an expression.
-    fn aim(&mut self, tokens: &[Token]) -> Found {
+    fn aim(&mut self, tokens: &[Token]) -> TargetParse {
         let line = tokens.first().map_or(0, |it| it.line);
         let (value, line, name) = match self.variables.value(self.text, tokens, self.axes) {
-            Value::Name(name) => (self.variables.of_name(&name)?, self.variables.line(&name), name),
-            Value::Other => return self.of_call(tokens),
-            value @ (Value::Pose(_) | Value::Joints(_) | Value::Broken(_)) => {
-                (value, line, shown(self.text, tokens))
+            UrScriptValue::Name(name) => (self.variables.of_name(&name)?, self.variables.line(&name), name),
+            UrScriptValue::Other => return self.of_call(tokens),
+            value @ (UrScriptValue::Pose(_) | UrScriptValue::Joints(_) | UrScriptValue::Broken(_)) => {
+                (value, line, excerpt(self.text, tokens))
             }
         };
         let (numbers, meant) = match value {
-            Value::Pose(numbers) => (numbers, Meant::Pose(PoseForm::RotationVector)),
-            Value::Joints(numbers) => (numbers, Meant::Joints),
-            Value::Broken(reason) => return Err(reason.to_owned()),
-            Value::Name(_) | Value::Other => return Err(reason::COMPUTED.to_owned()),
+            UrScriptValue::Pose(numbers) => (numbers, PoseMeaning::Pose(PoseForm::RotationVector)),
+            UrScriptValue::Joints(numbers) => (numbers, PoseMeaning::Joints),
+            UrScriptValue::Broken(reason) => return Err(reason.to_owned()),
+            UrScriptValue::Name(_) | UrScriptValue::Other => return Err(reason::COMPUTED.to_owned()),
         };
-        let target = self.out.target(Target { line, name, numbers, meant });
-        Ok(Aim { target, frames: Vec::new(), stated: Stated::Nothing, tool: None, is_inverse: false })
+        let target = self.out.target(ProgramTarget { line, name, numbers, meant });
+        Ok(MotionArgument {
+            target,
+            frames: Vec::new(),
+            stated: StatedConfiguration::Nothing,
+            tool: None,
+            is_inverse: false,
+        })
     }
 
     /// A stated pose, which is changed once more.
-    fn pose(&mut self, tokens: &[Token]) -> Found {
+    fn pose(&mut self, tokens: &[Token]) -> TargetParse {
         let aim = self.aim(tokens)?;
-        let is_pose = self.out.targets.get(aim.target).is_some_and(|it| it.meant != Meant::Joints);
+        let is_pose = self.out.targets.get(aim.target).is_some_and(|it| it.meant != PoseMeaning::Joints);
         if is_pose && !aim.is_inverse { Ok(aim) } else { Err(reason::COMPUTED.to_owned()) }
     }
 
     /// The target of `pose_trans(…)` or `get_inverse_kin(…)`.
-    fn of_call(&mut self, tokens: &[Token]) -> Found {
+    fn of_call(&mut self, tokens: &[Token]) -> TargetParse {
         let computed = || reason::COMPUTED.to_owned();
         let [name, rest @ ..] = tokens else { return Err(computed()) };
         let Some((inside, [])) = bracket(rest, b'(', b')') else { return Err(computed()) };
@@ -170,9 +183,13 @@ impl Reader<'_> {
         match (name.text(self.text), &arguments[..]) {
             ("pose_trans", [frame, pose]) => {
                 let frame = match self.variables.value(self.text, frame, self.axes) {
-                    Value::Pose(numbers) => Frame::Is(FORM.of_numbers(&numbers).ok_or_else(computed)?),
-                    Value::Name(name) => Frame::Named(name),
-                    Value::Joints(_) | Value::Broken(_) | Value::Other => return Err(computed()),
+                    UrScriptValue::Pose(numbers) => {
+                        PoseFrame::Is(FORM.of_numbers(&numbers).ok_or_else(computed)?)
+                    }
+                    UrScriptValue::Name(name) => PoseFrame::Named(name),
+                    UrScriptValue::Joints(_) | UrScriptValue::Broken(_) | UrScriptValue::Other => {
+                        return Err(computed());
+                    }
                 };
                 let mut aim = self.pose(pose)?;
                 aim.frames.insert(0, frame);
@@ -183,7 +200,7 @@ impl Reader<'_> {
         }
     }
 
-    fn inverse(&mut self, pose: &[Token], others: &[&[Token]]) -> Found {
+    fn inverse(&mut self, pose: &[Token], others: &[&[Token]]) -> TargetParse {
         const NAMES: [&str; 4] = ["qnear", "maxPositionError", "maxOrientationError", "tcp"];
         let mut aim = self.pose(pose)?;
         aim.is_inverse = true;
@@ -193,9 +210,10 @@ impl Reader<'_> {
                 all => (NAMES.get(at).copied().unwrap_or(""), *all),
             };
             match name {
-                "qnear" => match self.literal(value) {
-                    Some(Value::Joints(numbers)) => {
-                        aim.stated = Stated::Near(numbers.iter().map(Number::scaled).collect());
+                "qnear" => match self.literal_value(value) {
+                    Some(UrScriptValue::Joints(numbers)) => {
+                        aim.stated =
+                            StatedConfiguration::Near(numbers.iter().map(Number::scaled_value).collect());
                     }
                     _ => return Err(reason::COMPUTED.to_owned()),
                 },
@@ -208,37 +226,43 @@ impl Reader<'_> {
     }
 
     /// The value of a literal, or of a variable that is assigned once.
-    fn literal(&self, tokens: &[Token]) -> Option<Value> {
+    fn literal_value(&self, tokens: &[Token]) -> Option<UrScriptValue> {
         match self.variables.value(self.text, tokens, self.axes) {
-            Value::Name(name) => self.variables.of_name(&name).ok(),
-            found @ (Value::Pose(_) | Value::Joints(_) | Value::Broken(_) | Value::Other) => Some(found),
+            UrScriptValue::Name(name) => self.variables.of_name(&name).ok(),
+            found @ (UrScriptValue::Pose(_)
+            | UrScriptValue::Joints(_)
+            | UrScriptValue::Broken(_)
+            | UrScriptValue::Other) => Some(found),
         }
     }
 
-    fn tool(&self, tokens: &[Token]) -> Setting {
+    fn tool(&self, tokens: &[Token]) -> ActiveFrame {
         let named = || match self.variables.value(self.text, tokens, self.axes) {
-            Value::Name(name) => self.given.tool(Some(&name)),
-            Value::Pose(_) | Value::Joints(_) | Value::Broken(_) | Value::Other => None,
+            UrScriptValue::Name(name) => self.given.tool(Some(&name)),
+            UrScriptValue::Pose(_)
+            | UrScriptValue::Joints(_)
+            | UrScriptValue::Broken(_)
+            | UrScriptValue::Other => None,
         };
-        match self.literal(tokens) {
-            Some(Value::Pose(numbers)) => FORM.of_numbers(&numbers),
+        match self.literal_value(tokens) {
+            Some(UrScriptValue::Pose(numbers)) => FORM.of_numbers(&numbers),
             _ => named(),
         }
-        .map_or(Setting::Unknown, Setting::Is)
+        .map_or(ActiveFrame::Unknown, ActiveFrame::Is)
     }
 
     /// Follows the program from motion to motion.
-    fn motions(mut self, program: &Program) -> Parsed {
+    fn motions(mut self, program: &Program) -> ParsedProgram {
         let names: BTreeSet<&str> = self.out.targets.iter().map(|it| it.name.as_str()).collect();
         let given = self.given;
         let at_start = given.frame(None).unwrap_or(Pose::identity());
         let motions = &mut self.out.motions;
-        let frame_of = |frame: &Frame| match frame {
-            Frame::Is(pose) => Ok(*pose),
-            Frame::Named(name) if names.contains(name.as_str()) => Err(reason::RELATIVE.to_owned()),
-            Frame::Named(name) => match (given.frame(Some(name)), self.variables.of_name(name)) {
+        let frame_of = |frame: &PoseFrame| match frame {
+            PoseFrame::Is(pose) => Ok(*pose),
+            PoseFrame::Named(name) if names.contains(name.as_str()) => Err(reason::RELATIVE.to_owned()),
+            PoseFrame::Named(name) => match (given.frame(Some(name)), self.variables.of_name(name)) {
                 (Some(pose), _) => Ok(pose),
-                (None, Ok(Value::Pose(numbers))) => {
+                (None, Ok(UrScriptValue::Pose(numbers))) => {
                     FORM.of_numbers(&numbers).ok_or_else(|| reason::COMPUTED.to_owned())
                 }
                 (None, Err(reason)) if reason == reason::ABSENT => Err(reason::FRAME.to_owned()),
@@ -246,28 +270,32 @@ impl Reader<'_> {
                 (None, Ok(_)) => Err(format!("its frame {name}: {}", reason::COMPUTED)),
             },
         };
-        let mut step = |step: &Step, state: &mut State| match step {
-            Step::Tool(setting) => state.tool = *setting,
-            Step::Moving(true) => state.frame = Setting::Unknown,
-            Step::Moving(false) => state.frame = Setting::Unset,
-            Step::Away => state.last = None,
-            Step::Move { aim: Aim { target, frames, stated, tool, is_inverse }, line, way } => {
+        let mut step = |step: &UrScriptStep, state: &mut FlowState| match step {
+            UrScriptStep::Tool(setting) => state.tool = *setting,
+            UrScriptStep::Moving(true) => state.frame = ActiveFrame::Unknown,
+            UrScriptStep::Moving(false) => state.frame = ActiveFrame::Unset,
+            UrScriptStep::Away => state.last = None,
+            UrScriptStep::Move {
+                aim: MotionArgument { target, frames, stated, tool, is_inverse },
+                line,
+                way,
+            } => {
                 let product = frames.iter().map(frame_of).try_fold(at_start, |all, it| it.map(|it| all * it));
-                let frame = product.as_ref().ok().filter(|_| state.frame != Setting::Unknown).copied();
-                let tool = tool.unwrap_or(state.tool).or(given.tool(None));
-                motions.push(Motion {
+                let frame = product.as_ref().ok().filter(|_| state.frame != ActiveFrame::Unknown).copied();
+                let tool = tool.unwrap_or(state.tool).pose_or(given.tool(None));
+                motions.push(ProgramMotion {
                     after: state.last.filter(|_| !program.threads_move),
-                    is_straight: *way != Way::Joints && !is_inverse,
+                    is_straight: *way != UrScriptMotionType::Joints && !is_inverse,
                     tool: tool.filter(|_| !program.threads_set),
                     frame,
                     stated: stated.clone(),
                     refused: product.err(),
-                    ..Motion::to(*target, *line)
+                    ..ProgramMotion::from_target(*target, *line)
                 });
-                state.last = (*way != Way::Stream).then(|| motions.len() - 1);
+                state.last = (*way != UrScriptMotionType::Stream).then(|| motions.len() - 1);
             }
         };
-        let mut walk = Walk::new(&program.blocks.routines, program.blocks.size, false, &mut step);
+        let mut walk = FlowWalk::new(&program.blocks.routines, program.blocks.size, false, &mut step);
         walk.run(&program.main, &program.blocks.called, &|_| false);
         self.out
     }

@@ -1,12 +1,12 @@
 //! Statements with an effect on motions.
 
-use crate::parsed::Setting;
-use crate::stated::Stated;
+use crate::parsed_program::ActiveFrame;
+use crate::stated_configuration::StatedConfiguration;
 use poecal_arm::lie::Pose;
 
 /// Path of a motion to its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Way {
+pub(crate) enum UrScriptMotionType {
     Joints,
     Straight,
     /// Many targets in short steps, not all of which are reached.
@@ -16,7 +16,7 @@ pub(crate) enum Way {
 
 /// A frame of a pose.
 #[derive(Clone, Debug)]
-pub(crate) enum Frame {
+pub(crate) enum PoseFrame {
     Is(Pose),
     /// A frame by its variable.
     Named(String),
@@ -24,11 +24,11 @@ pub(crate) enum Frame {
 
 /// A statement with an effect on motions.
 #[derive(Clone, Debug)]
-pub(crate) enum Step {
+pub(crate) enum UrScriptStep {
     /// A motion to the target with this index, in these frames.
-    Move { aim: Aim, line: usize, way: Way },
+    Move { aim: MotionArgument, line: usize, way: UrScriptMotionType },
     /// Sets the tool.
-    Tool(Setting),
+    Tool(ActiveFrame),
     /// True if poses are in a moving frame from here on, false if no longer.
     Moving(bool),
     /// The position of the robot becomes unknown.
@@ -37,11 +37,11 @@ pub(crate) enum Step {
 
 /// Target and settings in the argument of a motion.
 #[derive(Clone, Debug)]
-pub(crate) struct Aim {
+pub(crate) struct MotionArgument {
     pub(crate) target: usize,
-    pub(crate) frames: Vec<Frame>,
-    pub(crate) stated: Stated,
-    pub(crate) tool: Option<Setting>,
+    pub(crate) frames: Vec<PoseFrame>,
+    pub(crate) stated: StatedConfiguration,
+    pub(crate) tool: Option<ActiveFrame>,
     /// True if it is converted to a configuration before the motion: the nearest, whatever the path.
     pub(crate) is_inverse: bool,
 }

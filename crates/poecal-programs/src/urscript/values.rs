@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::axes::Axes;
-use super::super::parsed::Number;
-use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, parts, signed};
+use super::super::axes::ControllerAxes;
+use super::super::parsed_program::Number;
+use super::super::scan::{LexicalRules, Scanner, Token, TokenKind, bracket, is_one_of, parts, signed_number};
 use super::blocks::{cut, header};
 use super::reason;
 
 /// Kind and contents of an expression.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Value {
+pub(crate) enum UrScriptValue {
     /// A pose `p[x, y, z, rx, ry, rz]`, all in numbers.
     Pose(Vec<Number>),
     /// A list with a number for each of the robot's readings.
@@ -24,32 +24,32 @@ pub(crate) enum Value {
 }
 
 #[derive(Clone, Debug)]
-struct Variable {
+struct UrScriptVariable {
     assignments: usize,
     line: usize,
-    value: Value,
+    value: UrScriptValue,
 }
 
 /// The variables and routines of a program.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Variables {
-    known: BTreeMap<String, Variable>,
+pub(crate) struct UrScriptVariables {
+    known: BTreeMap<String, UrScriptVariable>,
     /// Names of routines and threads.
     pub(crate) routines: BTreeSet<String>,
 }
 
-impl Variables {
+impl UrScriptVariables {
     /// The variables of a text.
-    pub(crate) fn from_text(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
-        let mut out = Variables::default();
+    pub(crate) fn from_text(text: &[u8], rules: &LexicalRules, axes: &ControllerAxes) -> Self {
+        let mut out = UrScriptVariables::default();
         let mut scanner = Scanner::new(text, rules);
         let mut line = Vec::new();
         while scanner.statement(&mut line).is_some() {
             for tokens in cut(text, &line) {
                 if let Some((name, parameters)) = header(text, tokens) {
                     out.routines.insert(name.to_owned());
-                    for parameter in parameters.iter().filter(|it| it.kind == Kind::Word) {
-                        out.assign(parameter.text(text), parameter.line, Value::Other, 2);
+                    for parameter in parameters.iter().filter(|it| it.kind == TokenKind::Word) {
+                        out.assign(parameter.text(text), parameter.line, UrScriptValue::Other, 2);
                     }
                     continue;
                 }
@@ -57,10 +57,10 @@ impl Variables {
                     [word, rest @ ..] if is_one_of("global local", word.text(text)) => rest,
                     all => all,
                 };
-                let Some(name) = rest.first().filter(|it| it.kind == Kind::Word) else { continue };
+                let Some(name) = rest.first().filter(|it| it.kind == TokenKind::Word) else { continue };
                 if let Some((_, after)) = bracket(&rest[1..], b'[', b']') {
                     if is_assigned(after) {
-                        out.assign(name.text(text), name.line, Value::Other, 2);
+                        out.assign(name.text(text), name.line, UrScriptValue::Other, 2);
                     }
                 } else if is_assigned(&rest[1..]) {
                     let value = out.value(text, &rest[2..], axes);
@@ -71,8 +71,8 @@ impl Variables {
         out
     }
 
-    fn assign(&mut self, name: &str, line: usize, value: Value, times: usize) {
-        let new = || Variable { assignments: 0, line, value };
+    fn assign(&mut self, name: &str, line: usize, value: UrScriptValue, times: usize) {
+        let new = || UrScriptVariable { assignments: 0, line, value };
         self.known.entry(name.to_owned()).or_insert_with(new).assignments += times;
     }
 
@@ -82,7 +82,7 @@ impl Variables {
     }
 
     /// The value of a variable that is assigned once, or the reason why it has none.
-    pub(crate) fn of_name(&self, name: &str) -> Result<Value, String> {
+    pub(crate) fn of_name(&self, name: &str) -> Result<UrScriptValue, String> {
         match self.known.get(name) {
             None => Err(reason::ABSENT.to_owned()),
             Some(it) if it.assignments > 1 => Err(reason::SEVERAL.to_owned()),
@@ -91,7 +91,7 @@ impl Variables {
     }
 
     /// Kind and contents of an expression.
-    pub(crate) fn value(&self, text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
+    pub(crate) fn value(&self, text: &[u8], tokens: &[Token], axes: &ControllerAxes) -> UrScriptValue {
         let list = |tokens: &[Token]| {
             let (inside, rest) = bracket(tokens, b'[', b']')?;
             let all = parts(inside);
@@ -99,16 +99,18 @@ impl Variables {
             rest.is_empty().then_some((all.len(), numbers))
         };
         match tokens {
-            [word] if word.kind == Kind::Word => Value::Name(word.text(text).to_owned()),
+            [word] if word.kind == TokenKind::Word => UrScriptValue::Name(word.text(text).to_owned()),
             [p, rest @ ..] if p.is_word(text, "p") && !rest.is_empty() => match list(rest) {
-                None => Value::Other,
-                Some((6, Some(numbers))) => Value::Pose(numbers),
-                Some(_) => Value::Broken(reason::EXPRESSIONS),
+                None => UrScriptValue::Other,
+                Some((6, Some(numbers))) => UrScriptValue::Pose(numbers),
+                Some(_) => UrScriptValue::Broken(reason::EXPRESSIONS),
             },
             _ => match list(tokens) {
-                None => Value::Other,
-                Some((count, _)) if count != axes.count() => Value::Broken(reason::COUNT),
-                Some((_, numbers)) => numbers.map_or(Value::Broken(reason::EXPRESSIONS), Value::Joints),
+                None => UrScriptValue::Other,
+                Some((count, _)) if count != axes.count() => UrScriptValue::Broken(reason::COUNT),
+                Some((_, numbers)) => {
+                    numbers.map_or(UrScriptValue::Broken(reason::EXPRESSIONS), UrScriptValue::Joints)
+                }
             },
         }
     }
@@ -120,7 +122,7 @@ fn is_assigned(tokens: &[Token]) -> bool {
 
 /// A number, or `d2r(number)`, with its sign.
 fn element(text: &[u8], tokens: &[Token]) -> Option<Number> {
-    if let Some(number) = signed(tokens) {
+    if let Some(number) = signed_number(tokens) {
         return Some(number);
     }
     let (sign, rest) = match tokens {
@@ -129,6 +131,6 @@ fn element(text: &[u8], tokens: &[Token]) -> Option<Number> {
     };
     let [word, rest @ ..] = rest else { return None };
     let (inside, []) = bracket(rest, b'(', b')')? else { return None };
-    let number = signed(inside).filter(|_| word.text(text) == "d2r")?;
+    let number = signed_number(inside).filter(|_| word.text(text) == "d2r")?;
     Some(Number { scale: sign * 1.0_f64.to_radians(), ..number })
 }

@@ -7,7 +7,7 @@ use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
-use crate::words::chosen;
+use crate::words::choose_word;
 
 /// Mean, root mean square, 95th percentile and maximum of errors.
 #[pyclass(frozen, eq, get_all, module = "poecal", name = "Statistic")]
@@ -82,13 +82,13 @@ impl ModelAccuracy {
     }
 
     /// Root mean square of the quantity that judges it.
-    fn leading(&self) -> String {
+    fn leading_rms(&self) -> String {
         number(self.0.lead().rms)
     }
 
     /// Unit of that quantity.
     fn unit(&self) -> &'static str {
-        self.0.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol())
+        self.0.leading_value().map_or("mm", |(quantity, _)| quantity.unit().symbol())
     }
 }
 
@@ -118,9 +118,9 @@ pub(crate) struct SetAccuracy {
 impl SetAccuracy {
     fn __repr__(&self) -> String {
         let [nominal, registered, calibrated] =
-            [self.nominal, self.registered, self.calibrated].map(|it| it.leading());
+            [self.nominal, self.registered, self.calibrated].map(|it| it.leading_rms());
         let corrected =
-            self.corrected.map_or_else(String::new, |model| format!(", corrected {}", model.leading()));
+            self.corrected.map_or_else(String::new, |model| format!(", corrected {}", model.leading_rms()));
         format!(
             "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated}{corrected} {} RMS>",
             self.count,
@@ -166,7 +166,7 @@ impl Accuracy {
                 AcceptedModel::Corrected => set.corrected.unwrap_or(set.calibrated),
                 AcceptedModel::Calibrated => set.calibrated,
             };
-            format!("{} {} RMS on {} {name} rows", model.leading(), model.unit(), set.count)
+            format!("{} {} RMS on {} {name} rows", model.leading_rms(), model.unit(), set.count)
         };
         let held_out = self.held_out.as_ref().map_or_else(String::new, |set| words(set, "held-out") + ", ");
         format!(
@@ -260,7 +260,7 @@ impl Verdict {
     fn is_at_least(&self, #[pyo3(from_py_with = arg::level)] level: &str) -> PyResult<bool> {
         let mut levels = Level::TABLE.map(|(level, word, _)| (word, level));
         levels.reverse();
-        Ok(self.0.level >= chosen("level", level, &levels)?)
+        Ok(self.0.level >= choose_word("level", level, &levels)?)
     }
 
     fn __repr__(&self) -> String {

@@ -3,16 +3,16 @@
 use std::path::PathBuf;
 
 use poecal_calibrate::AcceptanceLimits;
-use poecal_cli::words::{self, Refit};
+use poecal_cli::words::{self, RefitChoice};
 use poecal_plan::plan::RobotError;
 use poecal_results::record::Record;
-use poecal_results::validation::Judging;
+use poecal_results::validation::ValidationOptions;
 use pyo3::prelude::*;
 
 use super::content::Calibration;
-use super::report_place::ReportPlace;
-use super::validated;
-use crate::arguments::{self as arg, Words};
+use super::report_place::ReportDestination;
+use super::validation;
+use crate::arguments::{self as arg, WordSet};
 use crate::calibrate::accept_limits;
 use crate::findings::{self, Findings};
 use crate::measurements::Measurements;
@@ -55,23 +55,29 @@ impl Calibration {
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
-        #[pyo3(from_py_with = arg::refit)] refit: Option<Words>,
+        #[pyo3(from_py_with = arg::refit)] refit: Option<WordSet>,
         #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
         #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
         #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
         #[pyo3(from_py_with = arg::force)] force: bool,
-        #[pyo3(from_py_with = arg::report)] report: Option<ReportPlace>,
+        #[pyo3(from_py_with = arg::report)] report: Option<ReportDestination>,
         #[pyo3(from_py_with = arg::record)] record: Option<Record>,
         #[pyo3(from_py_with = arg::history)] history: Option<PathBuf>,
     ) -> PyResult<Findings> {
-        measurements.check_robot(self.calibrated()?)?;
+        measurements.check_robot(self.calibrated_robot()?)?;
         let limits = accept_limits(accept, accept_model)?;
-        let refit = refit.map(|it| it.chosen("refit", words::REFIT)).transpose()?;
-        let [refit_frame, refit_tool, refit_moved] = [Refit::Device, Refit::Tool, Refit::Auto]
-            .map(|what| refit.iter().flatten().any(|it| *it == what));
-        let judging = Judging { refit_frame, refit_moved, refit_tool, accept: limits.as_ref() };
-        let places =
-            validated::Places::reserve(py, (self, measurements), (out.as_deref(), force), report, history)?;
+        let refit = refit.map(|it| it.choose("refit", words::REFIT)).transpose()?;
+        let [refit_frame, refit_tool, refit_moved] =
+            [RefitChoice::Device, RefitChoice::Tool, RefitChoice::Auto]
+                .map(|what| refit.iter().flatten().any(|it| *it == what));
+        let judging = ValidationOptions { refit_frame, refit_moved, refit_tool, accept: limits.as_ref() };
+        let places = validation::ValidateOutputs::reserve(
+            py,
+            (self, measurements),
+            (out.as_deref(), force),
+            report,
+            history,
+        )?;
         places.judge(py, (self, measurements), &judging, record.unwrap_or_default())
     }
 
@@ -109,7 +115,7 @@ impl Calibration {
     ) -> PyResult<Findings> {
         findings::identify(
             py,
-            self.calibrated()?,
+            self.calibrated_robot()?,
             joints,
             kind,
             sigma_position_mm,

@@ -60,17 +60,17 @@ impl Calibration {
         #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         self.warn_of_gain(py)?;
-        let actual = self.actual(model)?;
-        let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
+        let actual = self.actual_robot(model)?;
+        let taught = self.file().taught_robot(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
-        let most = reach::Most {
+        let most = reach::MaxCorrectionArgument {
             turn_deg: max_turn_deg,
             slide_mm: max_slide_mm,
             turn_rad: max_turn_rad,
             slide_m: max_slide_m,
         };
         let options = reach::change(nearest, most)?;
-        let counting = reach::counting(self.file(), readings)?;
+        let counting = reach::find_controller_map(self.file(), readings)?;
         let joints = (joints, counting.as_ref());
         reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, &options, summary)
     }
@@ -88,8 +88,8 @@ impl Calibration {
     ///     That robot.
     #[pyo3(signature = (*, model="corrected"))]
     fn taught(&self, #[pyo3(from_py_with = arg::model)] model: &str) -> PyResult<Robot> {
-        let actual = self.actual(model)?;
-        let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
+        let actual = self.actual_robot(model)?;
+        let taught = self.file().taught_robot(&actual.model.robot).map_err(raise)?;
         Ok(actual.with_robot(taught.robot))
     }
 
@@ -156,14 +156,14 @@ impl Calibration {
         #[pyo3(from_py_with = arg::check)] check: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
-        let most = reach::Most {
+        let most = reach::MaxCorrectionArgument {
             turn_deg: max_turn_deg,
             slide_mm: max_slide_mm,
             turn_rad: max_turn_rad,
             slide_m: max_slide_m,
         };
         self.warn_of_gain(py)?;
-        let stated = programs::Stated {
+        let stated = programs::ProgramSettings {
             language,
             tools: tool_data,
             frames: work_objects,

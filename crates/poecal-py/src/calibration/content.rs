@@ -31,21 +31,21 @@ use crate::words::one_of;
 pub(crate) struct Calibration {
     /// The nominal robot, after whose file models are written.
     pub(super) nominal: Robot,
-    found: Found,
+    found: ContentSource,
     calibrated: OnceLock<Robot>,
     corrected: OnceLock<Option<Robot>>,
 }
 
 /// Source of all other contents.
-enum Found {
+enum ContentSource {
     /// A calibration of this process.
-    Fit(Box<Fit>),
+    Fit(Box<ProcessFit>),
     /// A calibration from files, or from a pickle.
-    Written(Box<Written>),
+    Written(Box<StoredCalibration>),
 }
 
 /// A calibration of this process; its file is made on demand.
-struct Fit {
+struct ProcessFit {
     calibration: poecal_calibrate::Calibration,
     data: Arc<MeasurementFile>,
     inputs: Inputs,
@@ -57,7 +57,7 @@ struct Fit {
 }
 
 /// A calibration from files.
-struct Written {
+struct StoredCalibration {
     /// The calibrated robot with its targets, exactly as fitted.
     robot: poecal_model::robot::Robot,
     file: CalibrationFile,
@@ -87,7 +87,7 @@ impl Calibration {
         (inputs, record): (Inputs, Record),
         took: Duration,
     ) -> Self {
-        let fit = Fit {
+        let fit = ProcessFit {
             calibration,
             data,
             inputs,
@@ -99,24 +99,24 @@ impl Calibration {
         };
         Calibration {
             nominal,
-            found: Found::Fit(Box::new(fit)),
+            found: ContentSource::Fit(Box::new(fit)),
             calibrated: OnceLock::new(),
             corrected: OnceLock::new(),
         }
     }
 
     /// A calibration from files.
-    pub(super) fn written(
+    pub(super) fn from_files(
         nominal: Robot,
         robot: poecal_model::robot::Robot,
         file: CalibrationFile,
         residuals: Option<Residuals>,
         summary: String,
     ) -> Self {
-        let written = Written { robot, file, residuals, summary };
+        let written = StoredCalibration { robot, file, residuals, summary };
         Calibration {
             nominal,
-            found: Found::Written(Box::new(written)),
+            found: ContentSource::Written(Box::new(written)),
             calibrated: OnceLock::new(),
             corrected: OnceLock::new(),
         }
@@ -126,17 +126,17 @@ impl Calibration {
     pub(crate) fn source(&self) -> Option<&Path> {
         let path = self.nominal.model.path.as_path();
         let is_file = path.extension().is_some_and(|it| it.eq_ignore_ascii_case("json"));
-        matches!(self.found, Found::Written(_)).then_some(path).filter(|_| is_file)
+        matches!(self.found, ContentSource::Written(_)).then_some(path).filter(|_| is_file)
     }
 
     /// The same robot with another result.
-    pub(crate) fn anew(
+    pub(crate) fn with_result(
         &self,
         robot: poecal_model::robot::Robot,
         file: CalibrationFile,
         summary: String,
     ) -> Self {
-        Calibration::written(self.nominal.clone(), robot, file, None, summary)
+        Calibration::from_files(self.nominal.clone(), robot, file, None, summary)
     }
 
     /// The calibration as a state.
@@ -156,14 +156,14 @@ impl Calibration {
         let file = CalibrationFile::parse(&file, UNWRITTEN).map_err(raise)?;
         let residuals =
             residuals.map(|text| Residuals::parse(&text, "residuals.csv")).transpose().map_err(raise)?;
-        Ok(Calibration::written(Robot::of_state(nominal)?, robot, file, residuals, summary))
+        Ok(Calibration::from_files(Robot::of_state(nominal)?, robot, file, residuals, summary))
     }
 
     /// The rows from which it was made: at hand, or read from the files that it names.
     pub(crate) fn own_rows(&self) -> PyResult<Cow<'_, Dataset>> {
         let written = match &self.found {
-            Found::Fit(fit) => return Ok(Cow::Borrowed(&fit.data.data)),
-            Found::Written(written) => written,
+            ContentSource::Fit(fit) => return Ok(Cow::Borrowed(&fit.data.data)),
+            ContentSource::Written(written) => written,
         };
         let file = &written.file;
         let paths = self.source().and_then(|source| file.own_measurements(source)).ok_or_else(|| {
@@ -177,7 +177,7 @@ impl Calibration {
         let mut meaning =
             ReadOptions { ignore_sets: true, controller: file.controller.clone(), ..ReadOptions::default() };
         if let Some(known) = &file.pictures {
-            known.complete(&mut meaning).map_err(raise)?;
+            known.complete_options(&mut meaning).map_err(raise)?;
         }
         let read = measurements::read(&paths, &written.robot, &meaning).map_err(raise)?;
         Ok(Cow::Owned(read.data))
@@ -186,21 +186,21 @@ impl Calibration {
     /// The contents of `calibration.json`.
     pub(crate) fn file(&self) -> &CalibrationFile {
         match &self.found {
-            Found::Fit(fit) => fit.file.get_or_init(|| CalibrationFile {
+            ContentSource::Fit(fit) => fit.file.get_or_init(|| CalibrationFile {
                 record: fit.record.clone(),
                 ..CalibrationFile::new(&fit.calibration, &fit.data.data, fit.inputs.clone())
             }),
-            Found::Written(written) => &written.file,
+            ContentSource::Written(written) => &written.file,
         }
     }
 
     /// Residuals of each row.
     pub(crate) fn rows(&self) -> PyResult<&Residuals> {
         match &self.found {
-            Found::Fit(fit) => {
+            ContentSource::Fit(fit) => {
                 Ok(fit.residuals.get_or_init(|| Residuals::from_calibration(&fit.data.data, &fit.calibration)))
             }
-            Found::Written(written) => written.residuals.as_ref().ok_or_else(|| {
+            ContentSource::Written(written) => written.residuals.as_ref().ok_or_else(|| {
                 let message = "found no residuals.csv beside the calibration.json, expected it: name it in Calibration.read";
                 argument("residuals", message)
             }),
@@ -210,34 +210,34 @@ impl Calibration {
     /// The program's table.
     pub(super) fn summary(&self) -> &str {
         match &self.found {
-            Found::Fit(fit) => {
+            ContentSource::Fit(fit) => {
                 fit.summary.get_or_init(|| report::summary(self.file(), report::Detail::Short))
             }
-            Found::Written(written) => &written.summary,
+            ContentSource::Written(written) => &written.summary,
         }
     }
 
     /// Time of the library in seconds, for a calibration of this process.
     pub(super) fn seconds(&self) -> Option<f64> {
         match &self.found {
-            Found::Fit(fit) => Some(fit.took.as_secs_f64()),
-            Found::Written(_) => None,
+            ContentSource::Fit(fit) => Some(fit.took.as_secs_f64()),
+            ContentSource::Written(_) => None,
         }
     }
 
     /// Errors of the three models; those of a fit need no file.
     pub(super) fn errors(&self) -> poecal_calibrate::Accuracy {
         match &self.found {
-            Found::Fit(fit) => fit.calibration.accuracy,
-            Found::Written(written) => written.file.accuracy,
+            ContentSource::Fit(fit) => fit.calibration.accuracy,
+            ContentSource::Written(written) => written.file.accuracy,
         }
     }
 
     /// The verdict.
-    pub(super) fn judged(&self) -> PyResult<&poecal_calibrate::Verdict> {
+    pub(super) fn require_verdict(&self) -> PyResult<&poecal_calibrate::Verdict> {
         match &self.found {
-            Found::Fit(fit) => Ok(&fit.calibration.verdict),
-            Found::Written(written) => written.file.verdict.as_ref().ok_or_else(|| {
+            ContentSource::Fit(fit) => Ok(&fit.calibration.verdict),
+            ContentSource::Written(written) => written.file.verdict.as_ref().ok_or_else(|| {
                 let message =
                     "found a calibration without a verdict, expected one: calibrate again with this version";
                 raise(ErrorKind::Model.error(message))
@@ -246,10 +246,10 @@ impl Calibration {
     }
 
     /// The delivered model: the corrected one if it has terms.
-    pub(crate) fn delivered(&self) -> AcceptedModel {
+    pub(crate) fn delivered_model(&self) -> AcceptedModel {
         let verdict = match &self.found {
-            Found::Fit(fit) => Some(&fit.calibration.verdict),
-            Found::Written(written) => written.file.verdict.as_ref(),
+            ContentSource::Fit(fit) => Some(&fit.calibration.verdict),
+            ContentSource::Written(written) => written.file.verdict.as_ref(),
         };
         verdict.and_then(|verdict| verdict.model).unwrap_or_else(|| {
             // Files of earlier versions do not state it.
@@ -263,13 +263,13 @@ impl Calibration {
     /// The calibrated robot with its targets, exactly as fitted.
     pub(super) fn as_fitted(&self) -> poecal_model::robot::Robot {
         match &self.found {
-            Found::Fit(fit) => fit.calibration.robot_with_targets(),
-            Found::Written(written) => written.robot.clone(),
+            ContentSource::Fit(fit) => fit.calibration.robot_with_targets(),
+            ContentSource::Written(written) => written.robot.clone(),
         }
     }
 
     /// The calibrated robot as in its file, which makes all predictions.
-    pub(crate) fn calibrated(&self) -> PyResult<&Robot> {
+    pub(crate) fn calibrated_robot(&self) -> PyResult<&Robot> {
         if let Some(robot) = self.calibrated.get() {
             return Ok(robot);
         }
@@ -280,18 +280,18 @@ impl Calibration {
     }
 
     /// The robot that a word names: "corrected", if there is one, or "calibrated".
-    pub(crate) fn actual(&self, model: &str) -> PyResult<&Robot> {
+    pub(crate) fn actual_robot(&self, model: &str) -> PyResult<&Robot> {
         let is_corrected = one_of("model", model, words::MODEL)? == AcceptedModel::Corrected;
-        let corrected = if is_corrected { self.corrected()? } else { None };
-        corrected.map_or_else(|| self.calibrated(), Ok)
+        let corrected = if is_corrected { self.optional_corrected_robot()? } else { None };
+        corrected.map_or_else(|| self.calibrated_robot(), Ok)
     }
 
     /// The corrected robot as in the file; `None` without terms.
-    pub(crate) fn corrected(&self) -> PyResult<Option<&Robot>> {
+    pub(crate) fn optional_corrected_robot(&self) -> PyResult<Option<&Robot>> {
         if let Some(robot) = self.corrected.get() {
             return Ok(robot.as_ref());
         }
-        let made = self.file().corrected().map(|file| {
+        let made = self.file().corrected_file().map(|file| {
             let robot = file.robot().map_err(raise)?;
             let source = ModelSource::Calibration(Box::new(file));
             Ok::<_, PyErr>(Robot::new(Model { robot, source, path: UNWRITTEN.into() }))

@@ -7,26 +7,26 @@ use poecal_cli::words;
 use poecal_fit::analysis::{self, PlannedSession};
 use poecal_fit::forensics;
 use poecal_model::measurement::{Noise, Quantity};
-use poecal_model::offsets::End;
+use poecal_model::offsets::EndConstraint;
 use poecal_plan::plan::{PlannedFit, RobotError, expected_errors};
 use poecal_report as report;
 use poecal_report::Detail;
 use poecal_results::compare as compared;
 use poecal_results::offsets::ModelOffsets;
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_results::record::Record;
-use poecal_results::track::{Earlier, TrackOptions, track as tracked};
-use poecal_results::validation::{ValidationInputs, now};
+use poecal_results::track::{Baseline, TrackOptions, track as tracked};
+use poecal_results::validation::{ValidationInputs, current_time};
 use pyo3::prelude::*;
 use serde::Serialize;
 
-use crate::arguments::{self as arg, Argument, Words, unexpected};
-use crate::arrays::Joints;
+use crate::arguments::{self as arg, Argument, WordSet, unexpected_error};
+use crate::arrays::JointArray;
 use crate::calibration::Calibration;
 use crate::errors::{argument, python_words, raise};
 use crate::measurements::Measurements;
+use crate::output_places::reserved_file;
 use crate::paths;
-use crate::places::reserved_file;
 use crate::robot::Robot;
 use crate::words::{frame as frame_word, from_mm, kind as kind_word, one_of, sigma, sigmas};
 
@@ -62,7 +62,7 @@ impl Findings {
         Ok(Self::of_json(class, text, answer, report::json(found).map_err(raise)?))
     }
 
-    pub(crate) fn warned(self, warnings: &[String]) -> Self {
+    pub(crate) fn with_warnings(self, warnings: &[String]) -> Self {
         Findings { warnings: warnings.iter().map(|it| python_words(it)).collect(), ..self }
     }
 }
@@ -116,7 +116,7 @@ pub(crate) fn check(
         report::Check::new(&robot.model, file, &found)
     });
     let warnings = file.map_or(&[][..], |file| &file.warnings);
-    Ok(Findings::new("Check", check.text(), check.answer(), &check)?.warned(warnings))
+    Ok(Findings::new("Check", check.text(), check.answer(), &check)?.with_warnings(warnings))
 }
 
 /// Unknowns that measurements in stated configurations would determine, before anything is measured.
@@ -155,7 +155,7 @@ pub(crate) fn identify(
     #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
 ) -> PyResult<Findings> {
     let model = &robot.model;
-    let joints = Joints::from_argument(joints, &model.robot)?;
+    let joints = JointArray::from_argument(joints, &model.robot)?;
     let [position_m, rotation_rad] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let usual = PlannedSession::default();
     let session = PlannedSession {
@@ -193,7 +193,7 @@ impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
         match (value.cast::<Robot>(), value.cast::<Calibration>()) {
             (Ok(robot), _) => Ok(RobotOrCalibration::Robot(robot.get())),
             (_, Ok(calibration)) => Ok(RobotOrCalibration::Calibration(calibration.get())),
-            _ => Err(unexpected(name, value, "a poecal.Robot or a poecal.Calibration")),
+            _ => Err(unexpected_error(name, value, "a poecal.Robot or a poecal.Calibration")),
         }
     }
 }
@@ -220,17 +220,17 @@ pub(crate) fn offsets(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::nominal)] nominal: &Robot,
     #[pyo3(from_py_with = arg::actual)] actual: RobotOrCalibration<'_>,
-    #[pyo3(from_py_with = arg::free)] free: Option<Words>,
-    #[pyo3(from_py_with = arg::fix)] fix: Option<Words>,
+    #[pyo3(from_py_with = arg::free)] free: Option<WordSet>,
+    #[pyo3(from_py_with = arg::fix)] fix: Option<WordSet>,
 ) -> PyResult<Findings> {
     let actual = match &actual {
         RobotOrCalibration::Robot(robot) => (*robot).clone(),
-        RobotOrCalibration::Calibration(calibration) => calibration.calibrated()?.clone(),
+        RobotOrCalibration::Calibration(calibration) => calibration.calibrated_robot()?.clone(),
     };
     let (nominal, actual) = (&nominal.model, &actual.model);
     let mut ends = [None, None];
-    for (name, stated, end) in [("free", free, End::Free), ("fix", fix, End::Kept)] {
-        let frames = stated.map(|it| it.chosen(name, words::OUTER_FRAME)).transpose()?;
+    for (name, stated, end) in [("free", free, EndConstraint::Free), ("fix", fix, EndConstraint::Kept)] {
+        let frames = stated.map(|it| it.choose(name, words::OUTER_FRAME)).transpose()?;
         for frame in frames.into_iter().flatten() {
             if ends[usize::from(frame == words::OuterFrame::Tip)].replace(end).is_some_and(|it| it != end) {
                 return Err(argument(
@@ -240,7 +240,7 @@ pub(crate) fn offsets(
             }
         }
     }
-    let explained = py.detach(|| ModelOffsets::between(nominal, actual, ends)).map_err(raise)?;
+    let explained = py.detach(|| ModelOffsets::from_robots(nominal, actual, ends)).map_err(raise)?;
     let found = report::Offsets::new(nominal, actual, &explained);
     let mut warnings = Vec::new();
     for joint in &nominal.robot.joints {
@@ -254,7 +254,7 @@ pub(crate) fn offsets(
         }
     }
     crate::warn(py, &warnings)?;
-    Ok(Findings::new("Offsets", found.text(), found.answer(), &found)?.warned(&warnings))
+    Ok(Findings::new("Offsets", found.text(), found.answer(), &found)?.with_warnings(&warnings))
 }
 
 /// Changes between two calibrations of one robot, and their comparison with noise.
@@ -282,7 +282,7 @@ pub(crate) fn compare(
     let limit_m = limit_mm.map(|it| sigma("limit_mm", it, from_mm)).transpose()?;
     let (one, other) = (first.file(), second.file());
     let found = py.detach(|| compared::compare(one, other, limit_m)).map_err(raise)?;
-    let told = report::Comparison::new(("first", one), ("second", other), &found).map_err(raise)?;
+    let told = report::ComparisonReport::new(("first", one), ("second", other), &found).map_err(raise)?;
     Findings::new("Comparison", told.text(Detail::Full), told.answer(), &told)
 }
 
@@ -333,15 +333,16 @@ pub(crate) fn track(
     let file = calibration.file();
     let options = visit_options(device, tool, repeatability_mm)?;
     let page = report.map(|path| visit_place(py, &path, force, (calibration, measurements))).transpose()?;
-    let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
+    let earlier = earlier.map(|it| Baseline { data: it.data(), is_own: true });
     let data = measurements.data();
     let found = py.detach(|| tracked(file, data, earlier, &options)).map_err(raise)?;
-    let told = report::Track::new(&found, &file.robot.name, ValidationInputs::default())
+    let told = report::TrackReport::new(&found, &file.robot.name, ValidationInputs::default())
         .with_record(record.unwrap_or_default());
     if let Some(page) = page {
-        py.detach(|| page.write(report::visit_page(&told, file, now().as_deref()))).map_err(raise)?;
+        py.detach(|| page.write(report::visit_page(&told, file, current_time().as_deref())))
+            .map_err(raise)?;
     }
-    Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.warned(&found.notes))
+    Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.with_warnings(&found.notes))
 }
 
 /// The output place of a visit's page, which must not be one of its inputs.
@@ -350,10 +351,10 @@ fn visit_place(
     path: &Path,
     force: bool,
     (calibration, measurements): (&Calibration, &Measurements),
-) -> PyResult<FilePlace> {
+) -> PyResult<ReservedFile> {
     let names = measurements.source.names.iter().map(Path::new);
     let inputs: Vec<&Path> = calibration.source().into_iter().chain(names).collect();
-    reserved_file(py, path, Existing::forced(force), &inputs)
+    reserved_file(py, path, ExistingFiles::from_switch(force), &inputs)
 }
 
 /// Knowledge of a visit, by the words of `track` and `recalibrate`.

@@ -1,13 +1,13 @@
 //! Poses of the calibrated robot's tip, and configurations for poses.
 
 use poecal_cli::words;
-use poecal_results::predictions::predicted;
+use poecal_results::predictions::predict_readings;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 
 use super::content::Calibration;
 use crate::arguments as arg;
-use crate::arrays::Joints;
+use crate::arrays::JointArray;
 use crate::errors::raise;
 use crate::prediction::Prediction;
 use crate::reach;
@@ -50,15 +50,15 @@ impl Calibration {
         #[pyo3(from_py_with = arg::model)] model: &str,
         #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let counting = reach::counting(self.file(), readings)?;
+        let counting = reach::find_controller_map(self.file(), readings)?;
         let frame = one_of("output_frame", output_frame, words::PREDICT_IN)?;
-        let model = &self.actual(model)?.model;
-        let joints = Joints::from_argument(joints, &model.robot)?;
+        let model = &self.actual_robot(model)?.model;
+        let joints = JointArray::from_argument(joints, &model.robot)?;
         let width = model.robot.reading_names().len();
         let found = py
             .detach(|| {
                 let readings = reach::to_model(counting.as_ref(), &joints.readings, width);
-                predicted(model, &readings, frame, target, with_uncertainty)
+                predict_readings(model, &readings, frame, target, with_uncertainty)
             })
             .map_err(raise)?;
         match found.doubts {
@@ -96,9 +96,9 @@ impl Calibration {
         #[pyo3(from_py_with = arg::model)] model: &str,
         #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robot = &self.actual(model)?.model.robot;
-        let counting = reach::counting(self.file(), readings)?;
-        reach::forward(py, robot, (joints, counting.as_ref()), &reach::factors(robot, factors)?)
+        let robot = &self.actual_robot(model)?.model.robot;
+        let counting = reach::find_controller_map(self.file(), readings)?;
+        reach::forward_kinematics(py, robot, (joints, counting.as_ref()), &reach::factors(robot, factors)?)
     }
 
     /// Motion of the tip with each reading: of its point, then its turn, in the axes of the base, deflection under weights included.
@@ -124,7 +124,7 @@ impl Calibration {
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robot = &self.actual(model)?.model.robot;
+        let robot = &self.actual_robot(model)?.model.robot;
         reach::jacobian(py, robot, joints, &reach::factors(robot, factors)?)
     }
 
@@ -153,7 +153,7 @@ impl Calibration {
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let robot = &self.actual(model)?.model.robot;
+        let robot = &self.actual_robot(model)?.model.robot;
         reach::sag(py, robot, joints, &reach::factors(robot, factors)?)
     }
 
@@ -193,7 +193,7 @@ impl Calibration {
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let actual = self.actual(model)?;
+        let actual = self.actual_robot(model)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         reach::inverse(py, actual, poses, (near, held), &factors, limits)
     }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use poecal_cli::words;
-use poecal_compensate::{Given, Language, ProgramOptions};
-use poecal_results::calibration_file::Counted;
+use poecal_compensate::{Language, ProgramOptions, StatedFrames};
+use poecal_results::calibration_file::ControllerCounts;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -14,7 +14,7 @@ use crate::reach;
 use crate::words::one_of;
 
 /// Statements about a program beside its text.
-pub(super) struct Stated<'a> {
+pub(super) struct ProgramSettings<'a> {
     pub(super) language: Option<String>,
     pub(super) tools: Option<Vec<String>>,
     pub(super) frames: Option<Vec<String>>,
@@ -24,9 +24,9 @@ pub(super) struct Stated<'a> {
     pub(super) third_axis: Option<&'a str>,
 }
 
-impl Stated<'_> {
+impl ProgramSettings<'_> {
     /// Adds the stated frames to those of a program.
-    fn give(&self, given: &mut Given, language: Language) -> PyResult<()> {
+    fn give(&self, given: &mut StatedFrames, language: Language) -> PyResult<()> {
         for words in self.tools.iter().flatten() {
             given.add_tool(words, language).map_err(raise)?;
         }
@@ -50,13 +50,13 @@ impl Stated<'_> {
 pub(super) fn compensate<'py>(
     py: Python<'py>,
     (calibration, model): (&Calibration, &str),
-    (path, stated): (&Path, Stated<'_>),
+    (path, stated): (&Path, ProgramSettings<'_>),
     factors: Option<&Bound<'py, PyAny>>,
-    (nearest, most): (bool, reach::Most),
+    (nearest, most): (bool, reach::MaxCorrectionArgument),
     check: bool,
 ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
-    let actual = calibration.actual(model)?;
-    let taught = calibration.file().taught(&actual.model.robot).map_err(raise)?;
+    let actual = calibration.actual_robot(model)?;
+    let taught = calibration.file().taught_robot(&actual.model.robot).map_err(raise)?;
     let factors = reach::factors(&actual.model.robot, factors)?;
     let language = reach::language(path, stated.language.as_deref())?;
     let change = reach::change(nearest, most)?;
@@ -68,8 +68,8 @@ pub(super) fn compensate<'py>(
             format!("found it for {}, expected a program of FANUC", language.title()),
         ));
     }
-    let Counted { controller, is_third_axis_open } =
-        calibration.file().counted(&taught.robot, third_axis).map_err(raise)?;
+    let ControllerCounts { controller, is_third_axis_open } =
+        calibration.file().controller_counts(&taught.robot, third_axis).map_err(raise)?;
     let mut options = ProgramOptions {
         change,
         check,
@@ -79,6 +79,6 @@ pub(super) fn compensate<'py>(
         ..ProgramOptions::new(language)
     };
     stated.give(&mut options.given, language)?;
-    options.given = options.given.taught(&taught.base, &taught.tool);
+    options.given = options.given.with_taught_frames(&taught.base, &taught.tool);
     reach::program(py, (&taught.robot, &actual.model.robot), path, &factors, &options)
 }

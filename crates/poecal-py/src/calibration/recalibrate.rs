@@ -2,7 +2,7 @@
 
 use poecal_report as report;
 use poecal_results::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
-use poecal_results::track::{Earlier, recalibrate as repaired};
+use poecal_results::track::{Baseline, recalibrate as repaired};
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
@@ -48,7 +48,7 @@ pub(crate) fn recalibrate(
     #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
 ) -> PyResult<Calibration> {
     let options = visit_options(device, tool, repeatability_mm)?;
-    let (joint, what) = RepairedPart::named(part);
+    let (joint, what) = RepairedPart::from_name(part);
     let source = calibration.source().filter(|path| path.is_file());
     let own = Inputs::checksums(source.into_iter()).map_err(raise)?;
     let read = [Some(measurements), earlier].into_iter().flatten().map(|it| &it.source);
@@ -57,12 +57,12 @@ pub(crate) fn recalibrate(
         calibration: source.map_or_else(String::new, |path| path.display().to_string()),
         sha256: own.into_iter().chain(read.flat_map(|it| it.sha256.clone())).collect(),
     };
-    let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
+    let earlier = earlier.map(|it| Baseline { data: it.data(), is_own: true });
     let (file, data) = (calibration.file(), measurements.data());
     let found = py.detach(|| repaired(file, data, earlier, &options, (joint, what), sources));
     let found = found.map_err(raise)?;
     crate::warn(py, &found.notes)?;
     let summary = report::summary(&found.file, report::Detail::Short);
     let robot = found.file.robot().map_err(raise)?;
-    Ok(calibration.anew(robot, found.file, summary))
+    Ok(calibration.with_result(robot, found.file, summary))
 }

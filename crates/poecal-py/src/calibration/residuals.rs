@@ -13,7 +13,7 @@ use crate::arguments as arg;
 use crate::arrays::table;
 use crate::calibration::Calibration;
 use crate::errors::no_package;
-use crate::of_model::OfModel;
+use crate::of_model::ModelSelector;
 use crate::words::quantity as quantity_word;
 
 /// Residuals and diagnostics of each row, fitted or held out, in the order of the measurements.
@@ -36,12 +36,12 @@ impl Residuals {
     }
 
     /// The model that a word names.
-    fn model_of(&self, word: &str) -> PyResult<OfModel> {
-        OfModel::named(word, self.calibration.get().delivered())
+    fn model_of(&self, word: &str) -> PyResult<ModelSelector> {
+        ModelSelector::from_name(word, self.calibration.get().delivered_model())
     }
 
     /// A value of each row.
-    fn each<T>(&self, of: impl Fn(&Rows, &ResidualRow) -> T) -> PyResult<Vec<T>> {
+    fn map_rows<T>(&self, of: impl Fn(&Rows, &ResidualRow) -> T) -> PyResult<Vec<T>> {
         let rows = self.rows()?;
         Ok(rows.rows().iter().map(|row| of(rows, row)).collect())
     }
@@ -52,11 +52,11 @@ impl Residuals {
         py: Python<'py>,
         of: impl Fn(&ResidualRow) -> Option<f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_vec(py, self.each(|_, row| of(row).unwrap_or(f64::NAN))?))
+        Ok(PyArray1::from_vec(py, self.map_rows(|_, row| of(row).unwrap_or(f64::NAN))?))
     }
 
     /// A diagnostic of each row.
-    fn judged<'py>(
+    fn diagnostic<'py>(
         &self,
         py: Python<'py>,
         of: impl Fn(&RowDiagnostics) -> f64,
@@ -69,7 +69,7 @@ impl Residuals {
         &self,
         py: Python<'py>,
         quantity: Quantity,
-        model: OfModel,
+        model: ModelSelector,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.numbers(py, |row| {
             row.errors.get(quantity).map(|errors| model.select_error(errors.models, errors.corrected))
@@ -83,17 +83,21 @@ impl Residuals {
             Some(errors) => errors.residual().to_vec(),
             None => vec![f64::NAN; count],
         };
-        table(py, self.each(|_, row| of(row))?.concat(), count)
+        table(py, self.map_rows(|_, row| of(row))?.concat(), count)
     }
 
     /// The table in a class of another package.
-    fn framed<'py>(&self, py: Python<'py>, package: &str) -> PyResult<Bound<'py, PyAny>> {
-        framed(py, package, &self.to_dict(py)?)
+    fn to_frame<'py>(&self, py: Python<'py>, package: &str) -> PyResult<Bound<'py, PyAny>> {
+        make_frame(py, package, &self.to_dict(py)?)
     }
 }
 
 /// A data frame of columns, by a package that may not be installed.
-fn framed<'py>(py: Python<'py>, package: &str, columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+fn make_frame<'py>(
+    py: Python<'py>,
+    package: &str,
+    columns: &Bound<'py, PyDict>,
+) -> PyResult<Bound<'py, PyAny>> {
     let found = py.import(package).map_err(|error| {
         if error.is_instance_of::<PyModuleNotFoundError>(py) { no_package(package) } else { error }
     })?;
@@ -101,7 +105,7 @@ fn framed<'py>(py: Python<'py>, package: &str, columns: &Bound<'py, PyDict>) -> 
 }
 
 /// A name, or `None` for an empty one.
-fn named(name: &str) -> Option<String> {
+fn name_or_none(name: &str) -> Option<String> {
     Some(name.to_owned()).filter(|name| !name.is_empty())
 }
 
@@ -114,37 +118,37 @@ impl Residuals {
     /// File of each row; None if it came from memory.
     #[getter]
     fn files(&self) -> PyResult<Vec<Option<String>>> {
-        self.each(|rows, row| named(rows.file(row)))
+        self.map_rows(|rows, row| name_or_none(rows.file(row)))
     }
 
     /// Line of each row in its file, from 1, shape (m,); 0 if it came from memory.
     #[getter]
     fn lines<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        Ok(PyArray1::from_vec(py, self.each(|_, row| row.line)?))
+        Ok(PyArray1::from_vec(py, self.map_rows(|_, row| row.line)?))
     }
 
     /// Id of each row; None if it has none.
     #[getter]
     fn ids(&self) -> PyResult<Vec<Option<String>>> {
-        self.each(|_, row| named(&row.id))
+        self.map_rows(|_, row| name_or_none(&row.id))
     }
 
     /// Held-out rows, shape (m,): True if the row was held out.
     #[getter]
     fn held_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        Ok(PyArray1::from_vec(py, self.each(|_, row| row.held_out)?))
+        Ok(PyArray1::from_vec(py, self.map_rows(|_, row| row.held_out)?))
     }
 
     /// Target of each row; None for the tip itself.
     #[getter]
     fn targets(&self) -> PyResult<Vec<Option<String>>> {
-        self.each(|rows, row| rows.targets.get(row.target).and_then(|name| named(name)))
+        self.map_rows(|rows, row| rows.targets.get(row.target).and_then(|name| name_or_none(name)))
     }
 
     /// Instrument of each row; None if there is only one.
     #[getter]
     fn instruments(&self) -> PyResult<Vec<Option<String>>> {
-        self.each(|rows, row| rows.stations.get(row.station).and_then(|name| named(name)))
+        self.map_rows(|rows, row| rows.stations.get(row.station).and_then(|name| name_or_none(name)))
     }
 
     /// Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN if no position was measured.
@@ -162,55 +166,55 @@ impl Residuals {
     /// Error of position of the nominal model, shape (m,), millimetres; NaN if no position was measured.
     #[getter]
     fn position_nominal_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Position, OfModel::Nominal)
+        self.errors_of(py, Quantity::Position, ModelSelector::Nominal)
     }
 
     /// Error of position of the registered model, shape (m,), millimetres; NaN if no position was measured.
     #[getter]
     fn position_registered_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Position, OfModel::Registered)
+        self.errors_of(py, Quantity::Position, ModelSelector::Registered)
     }
 
     /// Error of position of the calibrated model, shape (m,), millimetres; NaN if no position was measured.
     #[getter]
     fn position_calibrated_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Position, OfModel::Calibrated)
+        self.errors_of(py, Quantity::Position, ModelSelector::Calibrated)
     }
 
     /// Error of rotation of the nominal model, shape (m,), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_nominal_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Rotation, OfModel::Nominal)
+        self.errors_of(py, Quantity::Rotation, ModelSelector::Nominal)
     }
 
     /// Error of rotation of the registered model, shape (m,), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_registered_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Rotation, OfModel::Registered)
+        self.errors_of(py, Quantity::Rotation, ModelSelector::Registered)
     }
 
     /// Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or if no position was measured.
     #[getter]
     fn position_corrected_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Position, OfModel::Corrected)
+        self.errors_of(py, Quantity::Position, ModelSelector::Corrected)
     }
 
     /// Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or if no orientation was measured.
     #[getter]
     fn rotation_corrected_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Rotation, OfModel::Corrected)
+        self.errors_of(py, Quantity::Rotation, ModelSelector::Corrected)
     }
 
     /// Error of rotation of the calibrated model, shape (m,), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_calibrated_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.errors_of(py, Quantity::Rotation, OfModel::Calibrated)
+        self.errors_of(py, Quantity::Rotation, ModelSelector::Calibrated)
     }
 
     /// The delivered model: "corrected" if it has terms, else "calibrated".
     #[getter]
     fn model(&self) -> &'static str {
-        self.calibration.get().delivered().word()
+        self.calibration.get().delivered_model().word()
     }
 
     /// Quantities that some row measured, such as "position", with their units; first the one that judges the calibration.
@@ -218,7 +222,7 @@ impl Residuals {
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = self.rows()?;
         let units = PyDict::new(py);
-        for quantity in rows.leading().into_iter().chain(rows.measured()) {
+        for quantity in rows.leading_quantity().into_iter().chain(rows.measured_quantities()) {
             units.set_item(quantity.name(), quantity.unit().symbol())?;
         }
         Ok(units)
@@ -284,31 +288,33 @@ impl Residuals {
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let model = self.model_of(model)?;
-        self.numbers(py, |row| row.corners.map(|corners| model.select_error(corners.models_px, corners.corrected_px)))
+        self.numbers(py, |row| {
+            row.corners.map(|corners| model.select_error(corners.models_px, corners.corrected_px))
+        })
     }
 
     /// Weight of each row in the fit, shape (m,); for a held-out row the weight that it would have had.
     #[getter]
     fn weight<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.judged(py, |judged| judged.weight)
+        self.diagnostic(py, |judged| judged.weight)
     }
 
     /// Leverage of each row, shape (m,): its influence on its own prediction.
     #[getter]
     fn leverage<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.judged(py, |judged| judged.leverage)
+        self.diagnostic(py, |judged| judged.leverage)
     }
 
     /// Studentised residual of each row, shape (m,): its length over its own standard deviation.
     #[getter]
     fn studentized<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.judged(py, |judged| judged.studentized)
+        self.diagnostic(py, |judged| judged.studentized)
     }
 
     /// Suspected rows, shape (m,): True if the row is suspected of a gross error.
     #[getter]
     fn suspected<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let suspected = self.each(|_, row| row.judged.as_ref().is_some_and(|judged| judged.suspected))?;
+        let suspected = self.map_rows(|_, row| row.judged.as_ref().is_some_and(|judged| judged.suspected))?;
         Ok(PyArray1::from_vec(py, suspected))
     }
 
@@ -324,7 +330,7 @@ impl Residuals {
         columns.set_item("file", self.files()?)?;
         columns.set_item("line", self.lines(py)?)?;
         columns.set_item("id", self.ids()?)?;
-        columns.set_item("set", self.each(|_, row| if row.held_out { "held_out" } else { "fit" })?)?;
+        columns.set_item("set", self.map_rows(|_, row| if row.held_out { "held_out" } else { "fit" })?)?;
         columns.set_item("target", self.targets()?)?;
         for quantity in rows.quantities() {
             for (at, name) in names(quantity, rows.has_corrected).enumerate() {
@@ -360,7 +366,7 @@ impl Residuals {
     /// pandas.DataFrame
     ///     A line for each row.
     fn to_dataframe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.framed(py, "pandas")
+        self.to_frame(py, "pandas")
     }
 
     /// The columns of residuals.csv as a data frame of polars, which has to be installed.
@@ -370,7 +376,7 @@ impl Residuals {
     /// polars.DataFrame
     ///     A line for each row.
     fn to_polars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.framed(py, "polars")
+        self.to_frame(py, "polars")
     }
 
     fn __repr__(&self) -> PyResult<String> {

@@ -6,18 +6,18 @@ use poecal_calibrate::AcceptedModel;
 use poecal_cli::words;
 use poecal_report as report;
 use poecal_results::export::{ExportFormat, ExportOptions, export};
-use poecal_results::output::{self, Contents, Existing, Results};
+use poecal_results::output::{self, Contents, ExistingFiles, Results};
 use poecal_results::record::Record;
 use poecal_results::residuals::ResidualRows;
 use poecal_results::shapes::Shapes;
 use pyo3::prelude::*;
 
 use super::content::Calibration;
-use super::report_place::ReportPlace;
+use super::report_place::ReportDestination;
 use crate::arguments as arg;
 use crate::errors::raise;
-use crate::places::{reserved_file, reserved_folder, said};
-use crate::words::{chosen, one_of};
+use crate::output_places::{reserved_file, reserved_folder, warn_messages};
+use crate::words::{choose_word, one_of};
 
 #[pymethods]
 impl Calibration {
@@ -51,23 +51,25 @@ impl Calibration {
         py: Python<'_>,
         #[pyo3(from_py_with = arg::folder)] folder: PathBuf,
         #[pyo3(from_py_with = arg::force)] force: bool,
-        #[pyo3(from_py_with = arg::report)] report: Option<ReportPlace>,
+        #[pyo3(from_py_with = arg::report)] report: Option<ReportDestination>,
     ) -> PyResult<Vec<String>> {
-        let report = report.unwrap_or(ReportPlace::Among(true));
+        let report = report.unwrap_or(ReportDestination::Among(true));
         let (file, residuals) = (self.file(), self.rows()?);
         let (robot, model) = (self.as_fitted(), &self.nominal.model);
-        let existing = Existing::forced(force);
+        let existing = ExistingFiles::from_switch(force);
         let measured = file.inputs.measurements.iter().map(Path::new);
         let inputs: Vec<&Path> = std::iter::once(model.path.as_path()).chain(measured).collect();
         let place = reserved_folder(py, &folder, Contents::Calibration, existing, &inputs)?;
         let elsewhere = match &report {
-            ReportPlace::File(path) => said(py, |say| place.reserve_report(path, &inputs, say))?,
-            ReportPlace::Among(_) => None,
+            ReportDestination::File(path) => {
+                warn_messages(py, |say| place.reserve_report(path, &inputs, say))?
+            }
+            ReportDestination::Among(_) => None,
         };
         let written = py.detach(|| {
             let page = match &report {
-                ReportPlace::Among(false) => None,
-                ReportPlace::Among(true) | ReportPlace::File(_) => {
+                ReportDestination::Among(false) => None,
+                ReportDestination::Among(true) | ReportDestination::File(_) => {
                     let shapes = Shapes::read(file, &folder.join("calibration.json"));
                     Some(report::calibration_page_with(file, residuals, &shapes)?)
                 }
@@ -114,10 +116,10 @@ impl Calibration {
         #[pyo3(from_py_with = arg::motors)] motors: Option<String>,
     ) -> PyResult<String> {
         let words = ExportFormat::ALL.map(|format| (format.word(), format));
-        let format = chosen("format", format, &words)?;
+        let format = choose_word("format", format, &words)?;
         let robot = match one_of("model", model, words::MODEL)? {
-            AcceptedModel::Corrected => self.corrected()?.unwrap_or(self.calibrated()?),
-            AcceptedModel::Calibrated => self.calibrated()?,
+            AcceptedModel::Corrected => self.optional_corrected_robot()?.unwrap_or(self.calibrated_robot()?),
+            AcceptedModel::Calibrated => self.calibrated_robot()?,
         };
         let options = ExportOptions { hash, motors };
         let exported = py.detach(|| export(&robot.model, format, &options)).map_err(raise)?;
@@ -155,9 +157,9 @@ impl Calibration {
     ) -> PyResult<()> {
         let residuals = self.rows()?;
         let mut file = self.file().clone();
-        file.record = file.record.overridden(&record.unwrap_or_default());
+        file.record = file.record.override_with(&record.unwrap_or_default());
         let file = &file;
-        let existing = if force { Existing::Replaced } else { Existing::Own };
+        let existing = if force { ExistingFiles::Replaced } else { ExistingFiles::Own };
         let place = reserved_file(py, &path, existing, &[])?;
         let page = || {
             let shapes = Shapes::read(file, &path);
@@ -188,13 +190,13 @@ impl Calibration {
         #[pyo3(from_py_with = arg::force)] force: bool,
     ) -> PyResult<()> {
         let file = self.file();
-        let stated = file.record.clone().overridden(&record.unwrap_or_default());
+        let stated = file.record.clone().override_with(&record.unwrap_or_default());
         let logo = logo.as_deref().map(poecal_formats::logo::read).transpose().map_err(raise)?;
-        let existing = if force { Existing::Replaced } else { Existing::Own };
+        let existing = if force { ExistingFiles::Replaced } else { ExistingFiles::Own };
         let place = reserved_file(py, &path, existing, &[])?;
         // The checksum is that of the written calibration.json.
         let sha256 = file.sha256().map_err(raise)?;
-        let attest = report::Attest { sha256: Some(sha256), logo };
+        let attest = report::CertificateExtras { sha256: Some(sha256), logo };
         py.detach(|| place.write(report::certificate_page(file, &stated, &attest))).map_err(raise)
     }
 }

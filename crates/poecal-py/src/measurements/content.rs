@@ -8,7 +8,7 @@ use poecal_model::measurement::Dataset;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::arguments::{Argument, unexpected};
+use crate::arguments::{Argument, unexpected_error};
 use crate::errors::{argument, raise};
 use crate::pickle;
 use crate::robot::Robot;
@@ -102,7 +102,7 @@ impl Measurements {
     }
 
     /// The rows of all parts.
-    pub(super) fn joined(parts: &[&Self]) -> PyResult<Self> {
+    pub(super) fn join_parts(parts: &[&Self]) -> PyResult<Self> {
         let data: Vec<&Dataset> = parts.iter().map(|part| part.data()).collect();
         let (mut source, mut notes, mut warnings) = (MeasurementSource::default(), Vec::new(), Vec::new());
         let add = |known: &mut Vec<String>, more: &[String]| {
@@ -130,8 +130,12 @@ impl Measurements {
             }
             source.train_where |= part.source.train_where;
         }
-        let file =
-            MeasurementFile { data: rows::joined(&data)?, notes, warnings, ..MeasurementFile::default() };
+        let file = MeasurementFile {
+            data: rows::join_datasets(&data)?,
+            notes,
+            warnings,
+            ..MeasurementFile::default()
+        };
         Ok(Measurements::new(file, source))
     }
 
@@ -154,7 +158,7 @@ impl Measurements {
 impl<'a, 'py> Argument<'a, 'py> for &'a Measurements {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let expected = "poecal.Measurements, as of Measurements.from_csv, from_arrays or from_dataframe";
-        value.cast::<Measurements>().map(Bound::get).map_err(|_| unexpected(name, value, expected))
+        value.cast::<Measurements>().map(Bound::get).map_err(|_| unexpected_error(name, value, expected))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use poecal_storage::disk::{self, GivenFiles, SystemDisk};
+use poecal_storage::disk::{self, PresetFiles, SystemDisk};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
 
@@ -33,5 +33,5 @@ pub(super) fn with_contents<'py, T>(
         files.push((PathBuf::from(&name), bytes));
         names.push(name);
     }
-    disk::on(Arc::new(GivenFiles::new(files, Some(Arc::new(SystemDisk)))), || work(names))
+    disk::run_on_disk(Arc::new(PresetFiles::new(files, Some(Arc::new(SystemDisk)))), || work(names))
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use poecal_import::GivenBag;
+use poecal_import::ConvertedBag;
 use poecal_numerics::error::ErrorKind;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -10,7 +10,7 @@ use pyo3::types::PyBytes;
 use crate::errors::raise;
 
 /// The bags in SQLite among some paths.
-pub(super) fn bags(py: Python<'_>, paths: &[PathBuf]) -> PyResult<Vec<GivenBag>> {
+pub(super) fn bags(py: Python<'_>, paths: &[PathBuf]) -> PyResult<Vec<ConvertedBag>> {
     let module = py.import("poecal._db3")?;
     let mut found = Vec::new();
     for path in paths {
@@ -23,7 +23,7 @@ pub(super) fn bags(py: Python<'_>, paths: &[PathBuf]) -> PyResult<Vec<GivenBag>>
             Err(error) => return Err(error),
         };
         let Some((mcap, sha256)) = bag.extract::<Option<(Bound<'_, PyBytes>, String)>>()? else { continue };
-        found.push(GivenBag { path: path.clone(), mcap: mcap.as_bytes().into(), sha256 });
+        found.push(ConvertedBag { path: path.clone(), mcap: mcap.as_bytes().into(), sha256 });
     }
     Ok(found)
 }

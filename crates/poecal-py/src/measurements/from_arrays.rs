@@ -16,9 +16,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use crate::arguments::Argument as _;
-use crate::arrays::{Numbers, pose_of};
+use crate::arrays::{NumberArray, pose_of};
 use crate::errors::{argument, raise, raise_at_row};
-use crate::words::{chosen, from_mm};
+use crate::words::{choose_word, from_mm};
 
 /// Largest deviation of a quaternion's norm from 1, as in files.
 const QUATERNION_TOLERANCE: f64 = 1e-2;
@@ -41,12 +41,12 @@ pub(crate) struct ArrayColumns<'a, 'py> {
 
 /// The rows.
 pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult<Dataset> {
-    let length =
-        NamedUnit::parse(columns.length_unit, Unit::Metre).map_err(|error| named("length_unit", error))?;
+    let length = NamedUnit::parse(columns.length_unit, Unit::Metre)
+        .map_err(|error| argument_error("length_unit", error))?;
     let readings = readings(robot, columns, length)?;
     let names = robot.reading_names();
     let m = readings.len() / names.len().max(1);
-    let seen = measured(columns, m, length)?;
+    let seen = make_measurements(columns, m, length)?;
     if columns.length_unit == "m" {
         refuse_millimetres(robot, &seen)?;
     }
@@ -96,18 +96,18 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
     Ok(data)
 }
 
-fn named(argument: &str, error: Error) -> PyErr {
+fn argument_error(argument: &str, error: Error) -> PyErr {
     raise(Error::new(error.kind(), format!("{argument}: {}", error.message())))
 }
 
 /// Readings of all rows in SI.
 fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: NamedUnit) -> PyResult<Vec<f64>> {
-    let angle =
-        NamedUnit::parse(columns.angle_unit, Unit::Radian).map_err(|error| named("angle_unit", error))?;
+    let angle = NamedUnit::parse(columns.angle_unit, Unit::Radian)
+        .map_err(|error| argument_error("angle_unit", error))?;
     let names = robot.reading_names();
     let n = names.len();
     let expected = format!("shape (m, {n}): in each row {}", names.join(", "));
-    let joints = Numbers::finite_of(columns.joints, "joints", &[None, Some(n)], &expected)?;
+    let joints = NumberArray::finite_of(columns.joints, "joints", &[None, Some(n)], &expected)?;
     let slides = |name: &String| {
         robot.joints.iter().any(|joint| joint.reading.name == *name && joint.kind == JointKind::Prismatic)
     };
@@ -181,7 +181,11 @@ fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
 }
 
 /// Measurements in SI.
-fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: NamedUnit) -> PyResult<Vec<Measurement>> {
+fn make_measurements(
+    columns: &ArrayColumns<'_, '_>,
+    m: usize,
+    length: NamedUnit,
+) -> PyResult<Vec<Measurement>> {
     match (columns.positions, columns.poses) {
         (Some(positions), None) => points(positions, columns.quaternions_xyzw, m, length),
         (None, Some(poses)) if columns.quaternions_xyzw.is_none() => frames(poses, m, length),
@@ -200,7 +204,7 @@ fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: NamedUnit) -> PyRe
 
 fn frames(poses: &Bound<'_, PyAny>, m: usize, length: NamedUnit) -> PyResult<Vec<Measurement>> {
     let expected = format!("shape ({m}, 4, 4): a pose for each row of joints");
-    let poses = Numbers::finite_of(poses, "poses", &[Some(m), Some(4), Some(4)], &expected)?;
+    let poses = NumberArray::finite_of(poses, "poses", &[Some(m), Some(4), Some(4)], &expected)?;
     let rows = poses.values.chunks_exact(16).enumerate();
     rows.map(|(row, numbers)| {
         let pose = pose_of(numbers).map_err(|message| argument("poses", format!("row {row}: {message}")))?;
@@ -218,11 +222,17 @@ fn points(
     length: NamedUnit,
 ) -> PyResult<Vec<Measurement>> {
     let expected = format!("shape ({m}, 3): a position for each row of joints");
-    let positions = Numbers::finite_of(positions, "positions", &[Some(m), Some(3)], &expected)?;
+    let positions = NumberArray::finite_of(positions, "positions", &[Some(m), Some(3)], &expected)?;
     let expected = format!("shape ({m}, 4): x, y, z, w of a unit quaternion for each row of joints");
     let name = "quaternions_xyzw";
     let quaternions = quaternions
-        .map(|value| Numbers::from_argument(value, name, &expected)?.shaped(&[Some(m), Some(4)], name, &expected))
+        .map(|value| {
+            NumberArray::from_argument(value, name, &expected)?.require_shape(
+                &[Some(m), Some(4)],
+                name,
+                &expected,
+            )
+        })
         .transpose()?;
     let rows = positions.values.chunks_exact(3).enumerate();
     rows.map(|(row, numbers)| {
@@ -250,7 +260,7 @@ fn points(
 fn sets(columns: &ArrayColumns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
     let words = [("fit", Set::Fit), ("held_out", Set::HeldOut)];
     let stated = columns.sets.iter().flatten();
-    stated.map(|word| word.as_ref().map(|word| chosen("sets", word, &words)).transpose()).collect()
+    stated.map(|word| word.as_ref().map(|word| choose_word("sets", word, &words)).transpose()).collect()
 }
 
 /// Standard deviation of each row, if stated.
@@ -263,13 +273,13 @@ fn sigma(
     let Some(value) = value else { return Ok(Vec::new()) };
     let expected = format!("a number, or shape ({m},): one for each row of joints");
     let mut numbers = match value.is_instance_of::<PyString>() {
-        true => Numbers::repeated(f64::from_argument(value, name)?, m),
-        false => Numbers::from_argument(value, name, &expected)?,
+        true => NumberArray::repeat_number(f64::from_argument(value, name)?, m),
+        false => NumberArray::from_argument(value, name, &expected)?,
     };
     if let (true, [number]) = (numbers.shape.is_empty(), numbers.values.as_slice()) {
-        numbers = Numbers::repeated(*number, m);
+        numbers = NumberArray::repeat_number(*number, m);
     }
-    let numbers = numbers.shaped(&[Some(m)], name, &expected)?;
+    let numbers = numbers.require_shape(&[Some(m)], name, &expected)?;
     let of_row = |(row, &value): (usize, &f64)| match value {
         value if value.is_nan() => Ok(None),
         value if value > 0.0 && value.is_finite() => Ok(Some(to_si(value))),

@@ -4,7 +4,7 @@ use poecal_numerics::error::Error;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyFloat, PyList, PyString, PyTuple};
 
-use crate::arguments::{found, unexpected};
+use crate::arguments::{describe_value, unexpected_error};
 use crate::errors::{argument, raise_at_row};
 
 /// Name of the data frame in messages.
@@ -20,7 +20,10 @@ pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
         let no_column = || {
             argument(
                 "frame",
-                format!("found {} as column `{title}`, expected a value for each row", found(&column)),
+                format!(
+                    "found {} as column `{title}`, expected a value for each row",
+                    describe_value(&column)
+                ),
             )
         };
         if column.is_instance_of::<PyString>() {
@@ -38,7 +41,7 @@ pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
         return Err(argument("frame", message));
     }
     let header: Vec<String> =
-        names.iter().map(|name| Ok(quoted(&name.str()?.to_cow()?))).collect::<PyResult<_>>()?;
+        names.iter().map(|name| Ok(quote_cell(&name.str()?.to_cow()?))).collect::<PyResult<_>>()?;
     let mut text = header.join(",") + "\n";
     for row in 0..rows {
         let cells: Vec<&str> =
@@ -65,7 +68,7 @@ fn names<'py>(frame: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
 
 fn no_table(frame: &Bound<'_, PyAny>) -> PyErr {
     let expected = "a data frame (with `columns` and columns by name, as of pandas or polars), a dict of columns, or a structured array";
-    unexpected("frame", frame, expected)
+    unexpected_error("frame", frame, expected)
 }
 
 /// A value as a cell: numbers with all digits, missing values empty.
@@ -75,19 +78,19 @@ fn cell(value: &Bound<'_, PyAny>, row: usize, column: &str) -> PyResult<String> 
         return Ok(number(value.value()));
     }
     if let Ok(text) = value.cast::<PyString>() {
-        return Ok(quoted(&text.to_cow()?));
+        return Ok(quote_cell(&text.to_cow()?));
     }
     // `numpy.ma.masked` would be a number.
     if value.is_none() || value.get_type().name()? == "MaskedConstant" {
         return Ok(String::new());
     }
     if let Ok(bytes) = value.cast::<PyBytes>() {
-        return Ok(quoted(&String::from_utf8_lossy(bytes.as_bytes())));
+        return Ok(quote_cell(&String::from_utf8_lossy(bytes.as_bytes())));
     }
     let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
     let is_array = value.getattr("ndim").and_then(|it| it.extract::<usize>()).is_ok_and(|ndim| ndim > 0);
     if is_list || is_array || value.is_instance_of::<PyDict>() {
-        let found = found(value);
+        let found = describe_value(value);
         let message = format!("row {row}: found {found} in column `{column}`, expected a number or a text");
         return Err(argument("frame", message));
     }
@@ -97,11 +100,11 @@ fn cell(value: &Bound<'_, PyAny>, row: usize, column: &str) -> PyResult<String> 
     let text = value.str()?;
     let text = text.to_cow()?;
     // Missing values of pandas.
-    Ok(if matches!(&*text, "<NA>" | "NaT") { String::new() } else { quoted(&text) })
+    Ok(if matches!(&*text, "<NA>" | "NaT") { String::new() } else { quote_cell(&text) })
 }
 
 /// A cell, quoted if necessary, on one line.
-fn quoted(text: &str) -> String {
+fn quote_cell(text: &str) -> String {
     // The reader removes an apostrophe before a text that a spreadsheet would run; one in the frame is protected by another.
     let mark = if text.starts_with('\'') { "'" } else { "" };
     let text = format!("{mark}{}", text.replace(['\n', '\r'], " "));

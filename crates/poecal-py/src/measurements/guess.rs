@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use poecal_import::{ColumnGuess, guess_columns as guessed};
 use pyo3::prelude::*;
 
-use crate::arguments::{self as arg, Links};
+use crate::arguments::{self as arg, NamedLinks};
 use crate::errors::raise;
 use crate::findings::Findings;
 use crate::paths;
@@ -34,7 +34,7 @@ pub(crate) fn guess_columns(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::path)] path: PathBuf,
     robot: &Bound<'_, PyAny>,
-    #[pyo3(from_py_with = arg::columns)] columns: Option<Links>,
+    #[pyo3(from_py_with = arg::columns)] columns: Option<NamedLinks>,
 ) -> PyResult<Findings> {
     let robot = paths::robot(robot)?;
     let robot = &robot.get().model.robot;

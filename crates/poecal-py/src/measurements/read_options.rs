@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use poecal_import::{ColumnMap, Frames, Join, PlaneContact, ReadOptions};
+use poecal_import::{ColumnMap, FrameGrouping, Join, PlaneContact, ReadOptions};
 
 /// Options of a reader, from the arguments of the same names.
 pub(super) fn options(
     columns: Option<&PathBuf>,
     train_where: Option<&str>,
     [ignore_sets, strict]: [bool; 2],
-    (frames, join, lag): (Frames, Option<Join>, Option<&str>),
+    (frames, join, lag): (FrameGrouping, Option<Join>, Option<&str>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
     [units, sheet, body]: [Option<&str>; 3],
     [instrument_noise, cameras, markers, topics]: [Option<&[String]>; 4],

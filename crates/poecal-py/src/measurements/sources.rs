@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use poecal_cli::words;
 use poecal_import as measurements;
-use poecal_import::{Frames, ReadOptions};
+use poecal_import::{FrameGrouping, ReadOptions};
 use poecal_results::calibration_file::Inputs;
 use poecal_storage::named_files::refuse_repeats;
 use pyo3::prelude::*;
@@ -336,7 +336,7 @@ impl Measurements {
                 columns.as_ref(),
                 train_where,
                 [ignore_sets, strict],
-                (Frames::Common, None, None),
+                (FrameGrouping::Common, None, None),
                 (socket_distance, contact),
                 [units, None, None],
                 [&instrument_noise, &cameras, &markers, &None].map(|it| it.as_deref()),
@@ -370,6 +370,6 @@ impl Measurements {
     ///     The rows of all parts.
     #[staticmethod]
     fn join(#[pyo3(from_py_with = arg::parts)] parts: Vec<Measurements>) -> PyResult<Self> {
-        Measurements::joined(&parts.iter().collect::<Vec<_>>())
+        Measurements::join_parts(&parts.iter().collect::<Vec<_>>())
     }
 }

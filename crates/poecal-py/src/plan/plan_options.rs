@@ -5,32 +5,32 @@ use poecal_calibrate::{Corrections, DeviceFrameKnowledge};
 use poecal_fit::analysis::PlannedSession;
 use poecal_model::measurement::{Noise, Quantity};
 use poecal_model::robot::{GravityDirection, Tolerance};
-use poecal_model::simulate::Kind;
+use poecal_model::simulate::SessionKind;
 use poecal_plan::plan::{PlannedFit, RobotError, workspace_in};
 use poecal_results::model::Model;
 use pyo3::prelude::*;
 
-use crate::arguments::Believed;
-use crate::arrays::{Joints, Numbers};
+use crate::arguments::PriorTolerance;
+use crate::arrays::{JointArray, NumberArray};
 use crate::calibrate::tolerance;
 use crate::errors::{argument, raise};
 use crate::robot::Robot;
 use crate::words::{frame as frame_word, from_mm, sigmas};
 
 /// Prior assumptions on a session before its measurement.
-pub(crate) struct Believe<'a> {
+pub(crate) struct PriorBeliefs<'a> {
     pub(crate) sigma_position_mm: Option<f64>,
     pub(crate) sigma_rotation_deg: Option<f64>,
     pub(crate) robot_error_mm: Option<RobotError>,
     pub(crate) device_frame: &'a str,
-    pub(crate) tolerance_deg_mm: &'a Believed,
+    pub(crate) tolerance_deg_mm: &'a PriorTolerance,
     pub(crate) corrections: Option<Corrections>,
     pub(crate) gravity: Option<GravityDirection>,
 }
 
-impl Believe<'_> {
+impl PriorBeliefs<'_> {
     /// The planned fit of so many configurations of a kind.
-    pub(crate) fn fit(self, model: &Model, kind: Kind, count: usize) -> PyResult<PlannedFit> {
+    pub(crate) fn fit(self, model: &Model, kind: SessionKind, count: usize) -> PyResult<PlannedFit> {
         let [position_m, rotation_rad] = sigmas(self.sigma_position_mm, self.sigma_rotation_deg)?;
         let usual = PlannedSession::default();
         let gravity = match self.gravity {
@@ -41,12 +41,12 @@ impl Believe<'_> {
             }
         };
         let tolerance = match self.tolerance_deg_mm {
-            Believed::Auto => {
+            PriorTolerance::Auto => {
                 let message =
                     "found `auto`, which measurements decide, expected two numbers, like (0.5, 5), or None";
                 return Err(argument("tolerance_deg_mm", message));
             }
-            Believed::None | Believed::Given(_) | Believed::Of(_) => {
+            PriorTolerance::None | PriorTolerance::Given(_) | PriorTolerance::Of(_) => {
                 tolerance(self.tolerance_deg_mm)?.or(Some(Tolerance::WIDE))
             }
         };
@@ -76,13 +76,13 @@ pub(crate) fn place(of_mm: Option<[f64; 3]>) -> Option<Vector3<f64>> {
 
 /// Configurations of an argument.
 pub(crate) fn configurations(value: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Option<Vec<f64>>> {
-    value.map(|value| Ok(Joints::from_argument(value, &robot.model.robot)?.readings)).transpose()
+    value.map(|value| Ok(JointArray::from_argument(value, &robot.model.robot)?.readings)).transpose()
 }
 
 /// Two corners of a box, metres.
 pub(crate) fn corners(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 2]> {
     let expected = "shape (2, 3): two corners of a box in the base frame, millimetres";
-    let numbers = Numbers::finite_of(value, name, &[Some(2), Some(3)], expected)?.values;
+    let numbers = NumberArray::finite_of(value, name, &[Some(2), Some(3)], expected)?.values;
     let at = |k: usize| numbers.get(k).copied().map_or(0.0, from_mm);
     let (a, b) = ([at(0), at(1), at(2)], [at(3), at(4), at(5)]);
     Ok([[0, 1, 2].map(|k: usize| a[k].min(b[k])), [0, 1, 2].map(|k: usize| a[k].max(b[k]))])

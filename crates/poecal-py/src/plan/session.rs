@@ -4,22 +4,22 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use poecal_cli::words;
-use poecal_plan::plan::{Conditions, PlanOptions, PlannedRow, RowPart, Sight, plan as planned};
+use poecal_plan::plan::{Conditions, DeviceView, PlanOptions, PlannedRow, RowPurpose, plan as planned};
 use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::shapes::capsules_of;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 
-use crate::arguments::Believed;
+use crate::arguments::PriorTolerance;
 use crate::calibration::Calibration;
 use crate::errors::{argument, raise};
 use crate::paths;
-use crate::plan_options::{Believe, configurations, corners, place, workspace};
-use crate::planned::Plan;
+use crate::plan_options::{PriorBeliefs, configurations, corners, place, workspace};
+use crate::plan_result::Plan;
 use crate::robot::Robot;
 use crate::visit_plan::VisitOptions;
-use crate::words::{chosen, from_mm, kind as kind_word, one_of, sigma, size};
+use crate::words::{choose_word, from_mm, kind as kind_word, one_of, sigma, size};
 
 /// Most configurations of a plan, and most rows for validation, as in the program.
 const MOST: usize = 1000;
@@ -27,7 +27,7 @@ const MOST: usize = 1000;
 const MOST_TARGETS: usize = 8;
 
 /// Rows that are planned, and existing ones.
-pub(super) struct Rows<'a, 'py> {
+pub(super) struct PlanningRows<'a, 'py> {
     pub(super) count: Option<usize>,
     pub(super) held_out_count: Option<usize>,
     pub(super) candidates: Option<&'a Bound<'py, PyAny>>,
@@ -36,7 +36,7 @@ pub(super) struct Rows<'a, 'py> {
 }
 
 /// Measured quantities, and the workspace in which predictions shall be good.
-pub(super) struct Aim<'a, 'py> {
+pub(super) struct PlanningGoal<'a, 'py> {
     pub(super) kind: &'a str,
     pub(super) criterion: &'a str,
     pub(super) workspace: Option<&'a Bound<'py, PyAny>>,
@@ -46,7 +46,7 @@ pub(super) struct Aim<'a, 'py> {
 }
 
 /// Permitted space of the robot.
-pub(super) struct Room<'a, 'py> {
+pub(super) struct RobotEnvironment<'a, 'py> {
     pub(super) margin_deg_mm: Option<(f64, f64)>,
     pub(super) keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
     pub(super) floor_height_mm: Option<f64>,
@@ -55,7 +55,7 @@ pub(super) struct Room<'a, 'py> {
 }
 
 /// Field of view of the measuring device.
-pub(super) struct View {
+pub(super) struct PlanView {
     pub(super) device_mm: Option<[f64; 3]>,
     pub(super) device_half_angle_deg: Option<f64>,
     pub(super) device_aim_mm: Option<[f64; 3]>,
@@ -65,17 +65,17 @@ pub(super) struct View {
 }
 
 /// A session that is to be planned.
-pub(super) struct Session<'a, 'py> {
-    pub(super) rows: Rows<'a, 'py>,
-    pub(super) aim: Aim<'a, 'py>,
-    pub(super) believe: Believe<'a>,
-    pub(super) room: Room<'a, 'py>,
-    pub(super) view: View,
+pub(super) struct PlanSession<'a, 'py> {
+    pub(super) rows: PlanningRows<'a, 'py>,
+    pub(super) aim: PlanningGoal<'a, 'py>,
+    pub(super) believe: PriorBeliefs<'a>,
+    pub(super) room: RobotEnvironment<'a, 'py>,
+    pub(super) view: PlanView,
     pub(super) stop_s: f64,
     pub(super) seed: u64,
 }
 
-impl Session<'_, '_> {
+impl PlanSession<'_, '_> {
     /// Plans a calibration, or visits to a calibrated robot.
     pub(super) fn plan_for<'py>(
         self,
@@ -84,7 +84,7 @@ impl Session<'_, '_> {
         robot: &Bound<'py, PyAny>,
         visits: &VisitOptions<'_>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if chosen("purpose", purpose, &[("calibration", false), ("drift", true)])? {
+        if choose_word("purpose", purpose, &[("calibration", false), ("drift", true)])? {
             self.refuse_for_visits()?;
             return visits.plan(py, robot, self.rows.count, self.rows.candidates)?.into_pyobject(py);
         }
@@ -94,8 +94,8 @@ impl Session<'_, '_> {
 
     /// Refuses statements about a calibration if visits are planned. A default is no statement.
     fn refuse_for_visits(&self) -> PyResult<()> {
-        let Session { rows, aim, believe, room, view, stop_s, seed } = self;
-        let usual = *believe.tolerance_deg_mm == Believed::Given((0.5, 5.0));
+        let PlanSession { rows, aim, believe, room, view, stop_s, seed } = self;
+        let usual = *believe.tolerance_deg_mm == PriorTolerance::Given((0.5, 5.0));
         let stated = [
             ("kind", aim.kind != "point"),
             ("held_out_count", rows.held_out_count.is_some()),
@@ -136,12 +136,12 @@ impl Session<'_, '_> {
 
     /// Plans the session.
     fn plan(self, py: Python<'_>, robot: &Robot) -> PyResult<Plan> {
-        let Session { rows, aim, believe, room, view, stop_s, seed } = self;
+        let PlanSession { rows, aim, believe, room, view, stop_s, seed } = self;
         let count = rows.count.unwrap_or(30);
         refuse_numbers(count, rows.held_out_count.unwrap_or(0), aim.targets)?;
         let model = &robot.model;
         let conditions = conditions(py, model, &room, &view)?;
-        let kept = kept(rows.keep_rows, robot)?;
+        let kept = kept_rows(rows.keep_rows, robot)?;
         let replaced = rows.replace_rows.unwrap_or_default();
         if let Some(row) = replaced.iter().find(|&&row| row >= kept.len()) {
             let expected =
@@ -164,7 +164,7 @@ impl Session<'_, '_> {
         };
         let stop_s = sigma("stop_s", stop_s, std::convert::identity)?;
         let found = py.detach(|| planned(&model.robot, &options)).map_err(raise)?;
-        let told = report::Plan::new(model, &options, &found, stop_s);
+        let told = report::PlanReport::new(model, &options, &found, stop_s);
         Ok(Plan { model: Arc::clone(model), options, found, told })
     }
 }
@@ -182,7 +182,12 @@ fn refuse_numbers(count: usize, judge: usize, targets: usize) -> PyResult<()> {
 }
 
 /// Conditions on a configuration.
-fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -> PyResult<Conditions> {
+fn conditions(
+    py: Python<'_>,
+    model: &Model,
+    room: &RobotEnvironment<'_, '_>,
+    view: &PlanView,
+) -> PyResult<Conditions> {
     let sight = [
         ("device_half_angle_deg", view.device_half_angle_deg.is_some()),
         ("device_aim_mm", view.device_aim_mm.is_some()),
@@ -212,7 +217,7 @@ fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -
         keep_out: boxes.enumerate().map(named).collect::<PyResult<_>>()?,
         floor_m: room.floor_height_mm.map(from_mm),
         separation_rad: angle("separation_deg", room.separation_deg)?.unwrap_or(0.0),
-        sight: place(view.device_mm).map(|at| Sight {
+        sight: place(view.device_mm).map(|at| DeviceView {
             place: at,
             cone: cone.map(|half| (place(view.device_aim_mm).unwrap_or_default(), half)),
             distance_m: view.distance_mm.map_or([0.0, f64::INFINITY], |(low, high)| [low, high].map(from_mm)),
@@ -224,21 +229,21 @@ fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -
 }
 
 /// Existing rows: those of a plan, or configurations to fit.
-fn kept(keep_rows: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
+fn kept_rows(keep_rows: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
     let Some(value) = keep_rows else { return Ok(Vec::new()) };
     if let Ok(plan) = value.cast::<Plan>() {
         return Ok(plan.get().found.rows.clone());
     }
     let readings = configurations(Some(value), robot)?.unwrap_or_default();
     let width = robot.model.robot.reading_names().len();
-    let parts = vec![RowPart::Fit; readings.len() / width.max(1)];
+    let parts = vec![RowPurpose::Fit; readings.len() / width.max(1)];
     Ok(PlannedRow::of_list(&readings, width, &parts))
 }
 
 /// The robot whose session is planned: the stated one, that of a path, or the calibrated one of a calibration.
 fn planned_robot<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Robot>> {
     match value.cast::<Calibration>() {
-        Ok(calibration) => Bound::new(value.py(), calibration.get().calibrated()?.clone()),
+        Ok(calibration) => Bound::new(value.py(), calibration.get().calibrated_robot()?.clone()),
         Err(_) => paths::robot(value),
     }
 }

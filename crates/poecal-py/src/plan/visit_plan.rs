@@ -6,18 +6,18 @@ use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_cli::words;
 use poecal_import::to_measure_again;
 use poecal_report as report;
-use poecal_results::output::Existing;
+use poecal_results::output::ExistingFiles;
 use poecal_results::track::{TrackOptions, witnesses};
 use pyo3::prelude::*;
 use serde::Serialize;
 
-use crate::arguments::{self as arg, unexpected};
-use crate::arrays::Joints;
+use crate::arguments::{self as arg, unexpected_error};
+use crate::arrays::JointArray;
 use crate::calibration::Calibration;
 use crate::errors::{argument, raise};
 use crate::findings::Findings;
 use crate::measurements::Measurements;
-use crate::places::reserved_file;
+use crate::output_places::reserved_file;
 use crate::words::{from_mm, one_of, sigma};
 
 /// Most configurations of a visit, as in the program, and their default number.
@@ -35,16 +35,16 @@ pub(crate) struct VisitOptions<'a> {
 
 /// A plan of visits, its configurations, and the table to fill in.
 #[derive(Serialize)]
-struct Planned<'a> {
+struct PlannedVisits<'a> {
     #[serde(flatten)]
     told: &'a report::WitnessPlan,
-    rows: Vec<Row<'a>>,
+    rows: Vec<VisitRow<'a>>,
     table: String,
 }
 
 /// A configuration to measure.
 #[derive(Serialize)]
-struct Row<'a> {
+struct VisitRow<'a> {
     /// Readings, radians and metres.
     readings: &'a [f64],
 }
@@ -77,14 +77,15 @@ impl VisitOptions<'_> {
     ) -> PyResult<Findings> {
         let expected =
             "a poecal.Calibration, as of poecal.calibrate or Calibration.read, with purpose=\"drift\"";
-        let calibration =
-            calibration.cast::<Calibration>().map_err(|_| unexpected("robot", calibration, expected))?;
+        let calibration = calibration
+            .cast::<Calibration>()
+            .map_err(|_| unexpected_error("robot", calibration, expected))?;
         let calibration = calibration.get();
         let count = count.unwrap_or(USUAL);
         if !(1..=MOST).contains(&count) {
             return Err(argument("count", format!("found {count}, expected 1 to {MOST}")));
         }
-        let (file, robot) = (calibration.file(), &calibration.calibrated()?.model.robot);
+        let (file, robot) = (calibration.file(), &calibration.calibrated_robot()?.model.robot);
         let known = self.device.map(|word| one_of("device", word, words::DEVICE));
         let anew = self.tool.map(|word| one_of("tool", word, words::TOOL));
         let options = TrackOptions {
@@ -95,7 +96,7 @@ impl VisitOptions<'_> {
                 .map(|it| sigma("repeatability_mm", it, from_mm))
                 .transpose()?,
         };
-        let new = candidates.map(|it| Joints::from_argument(it, robot)).transpose()?;
+        let new = candidates.map(|it| JointArray::from_argument(it, robot)).transpose()?;
         let readings = new.as_ref().map(|it| it.readings.as_slice());
         let own;
         let earlier = match self.earlier {
@@ -110,8 +111,8 @@ impl VisitOptions<'_> {
             let told = report::WitnessPlan::new(&found, &file.robot.name, new.is_some());
             let table = to_measure_again(&found.rows, &found.configurations, robot, new.is_some())?;
             let first = found.configurations.iter().filter_map(|rows| rows.first());
-            let rows = first.map(|row| Row { readings: found.rows.readings(*row as usize) }).collect();
-            let json = report::json(&Planned { told: &told, rows, table })?;
+            let rows = first.map(|row| VisitRow { readings: found.rows.readings(*row as usize) }).collect();
+            let json = report::json(&PlannedVisits { told: &told, rows, table })?;
             Ok(Findings::of_json("VisitPlan", told.text(), told.answer(), json))
         };
         py.detach(work).map_err(raise)
@@ -126,6 +127,6 @@ pub(crate) fn _write_text(
     #[pyo3(from_py_with = arg::text)] text: String,
     #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<()> {
-    let place = reserved_file(py, &path, Existing::forced(force), &[])?;
+    let place = reserved_file(py, &path, ExistingFiles::from_switch(force), &[])?;
     py.detach(|| place.write(vec![text.into()])).map_err(raise)
 }

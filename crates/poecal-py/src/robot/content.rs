@@ -12,13 +12,13 @@ use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::arguments::{Argument, unexpected};
+use crate::arguments::{Argument, unexpected_error};
 use crate::arrays::{pose_array, pose_arrays};
 use crate::errors::{argument, raise};
-use crate::words::chosen;
+use crate::words::choose_word;
 
 /// Inverse kinematics at these values of the factors.
-type KeptInverse = (Vec<f64>, Arc<Inverse>);
+type CachedInverse = (Vec<f64>, Arc<Inverse>);
 
 /// A serial robot: joints with screws, and a home pose. It never changes.
 ///
@@ -31,7 +31,7 @@ pub(crate) struct Robot {
     /// SHA-256 of the file from which it was read, by its name.
     pub(crate) sha256: Arc<BTreeMap<String, String>>,
     /// Its inverse kinematics at the factors of the last call.
-    inverse: Arc<Mutex<Option<KeptInverse>>>,
+    inverse: Arc<Mutex<Option<CachedInverse>>>,
 }
 
 impl Robot {
@@ -140,7 +140,7 @@ enum SourceState {
 }
 
 impl Robot {
-    pub(super) fn converted(&self, py: Python<'_>, form: ModelFormat) -> PyResult<String> {
+    pub(super) fn convert_to(&self, py: Python<'_>, form: ModelFormat) -> PyResult<String> {
         let converted = py.detach(|| convert(&self.model, form)).map_err(raise)?;
         crate::warn(py, &converted.notes)?;
         Ok(converted.text)
@@ -174,7 +174,7 @@ pub(crate) fn poses<'py>(
 /// The named form, or that of a file's extension.
 pub(crate) fn form(format: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
     if let Some(word) = format {
-        return chosen("format", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
+        return choose_word("format", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
     }
     path.and_then(ModelFormat::of_path).ok_or_else(|| {
         argument(
@@ -193,6 +193,6 @@ pub(crate) fn form(format: Option<&str>, path: Option<&Path>) -> PyResult<ModelF
 impl<'a, 'py> Argument<'a, 'py> for &'a Robot {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let expected = "a poecal.Robot; poecal.Robot.read reads one from a file";
-        value.cast::<Robot>().map(Bound::get).map_err(|_| unexpected(name, value, expected))
+        value.cast::<Robot>().map(Bound::get).map_err(|_| unexpected_error(name, value, expected))
     }
 }

@@ -8,10 +8,10 @@ use poecal_results::model::{Model, ModelSource};
 use pyo3::prelude::*;
 
 use super::content::Robot;
-use crate::arguments::{self as arg, Links, is_content};
-use crate::build::{DhTable, Naming, from_dh, from_screws};
+use crate::arguments::{self as arg, NamedLinks, is_content};
+use crate::build::{DhArguments, NamingArguments, from_dh, from_screws};
 use crate::errors::{argument, raise};
-use crate::words::shortened;
+use crate::words::shorten_text;
 
 /// Path of a robot that was read from a text.
 const TEXT: &str = "text";
@@ -49,8 +49,8 @@ impl Robot {
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
-        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
-        #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<NamedLinks>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<NamedLinks>,
     ) -> PyResult<Self> {
         let selection = arg::selection(base_link, tip_link, instruments, targets);
         Robot::of_file(py.detach(|| Model::read(&path, &selection)).map_err(raise)?)
@@ -78,8 +78,8 @@ impl Robot {
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
-        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
-        #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<NamedLinks>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<NamedLinks>,
     ) -> PyResult<Self> {
         let selection = arg::selection(base_link, tip_link, instruments, targets);
         let document = py.detach(|| UrdfDocument::read(&path, &selection)).map_err(raise)?;
@@ -126,12 +126,12 @@ impl Robot {
         #[pyo3(from_py_with = arg::text)] text: &str,
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
-        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
-        #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<NamedLinks>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<NamedLinks>,
     ) -> PyResult<Self> {
         if !is_content(text) {
             let expected = "the text of a model; poecal.Robot.read reads a file";
-            return Err(argument("text", format!("found `{}`, expected {expected}", shortened(text))));
+            return Err(argument("text", format!("found `{}`, expected {expected}", shorten_text(text))));
         }
         let selection = arg::selection(base_link, tip_link, instruments, targets);
         py.detach(|| Model::parse(text, TEXT, &selection)).map(Robot::new).map_err(raise)
@@ -172,7 +172,7 @@ impl Robot {
         #[pyo3(from_py_with = arg::base_link)] base_link: &str,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: &str,
     ) -> PyResult<Self> {
-        let naming = Naming { name, names, limits, base_link, tip_link };
+        let naming = NamingArguments { name, names, limits, base_link, tip_link };
         from_screws(screws, home, angular_first, &naming).map(Robot::new)
     }
 
@@ -219,8 +219,8 @@ impl Robot {
         #[pyo3(from_py_with = arg::base_link)] base_link: &str,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: &str,
     ) -> PyResult<Self> {
-        let naming = Naming { name, names, limits, base_link, tip_link };
-        from_dh(&DhTable { a_m, alpha_rad, d_m, theta_rad, convention, kinds, base, tool }, &naming)
+        let naming = NamingArguments { name, names, limits, base_link, tip_link };
+        from_dh(&DhArguments { a_m, alpha_rad, d_m, theta_rad, convention, kinds, base, tool }, &naming)
             .map(Robot::new)
     }
 }

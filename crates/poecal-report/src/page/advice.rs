@@ -4,19 +4,19 @@ use std::borrow::Cow;
 
 use maud::{Markup, Render, html};
 
-use super::html::quoted;
+use super::html::quote_text;
 
 /// A sentence from `calibration.json` with its statements about options folded.
-pub(crate) fn told(text: &str, key: impl Render) -> Markup {
-    folded(text, &quoted(text, key))
+pub(crate) fn sentence_markup(text: &str, key: impl Render) -> Markup {
+    fold_sentence(text, &quote_text(text, key))
 }
 
 /// The same for words that are composed of several of its sentences.
 pub(crate) fn told_words(text: &str) -> Markup {
-    folded(text, &quoted_words(text))
+    fold_sentence(text, &quoted_words(text))
 }
 
-fn folded(text: &str, whole: &Markup) -> Markup {
+fn fold_sentence(text: &str, whole: &Markup) -> Markup {
     match without_options(text) {
         Cow::Borrowed(_) => html! { (whole) },
         Cow::Owned(plain) => html! {

@@ -3,13 +3,14 @@
 
 use maud::{Markup, html};
 
-use super::advice::{told, told_words};
-use super::certificate::{limits_table, stated, title_of};
-use super::html::{figure, list, quoted};
+use super::advice::{sentence_markup, told_words};
+use super::certificate::{limits_table, record_markup, title_of};
+use super::html::{figure, list, quote_text};
 use super::joints;
-use super::lead::spaced;
+use super::leading_error::spaced_unit;
 use crate::summary::{
-    Leading, ModelRow, Place, Point, SEE_ROBUST, expected, judged_on, look_at, reasons, why_larger,
+    LeadingRows, ModelRow, PointSource, ReviewPoint, SEE_ROBUST, expected_summary, judged_on, look_at,
+    reasons, why_larger,
 };
 use crate::table::joints_words;
 use poecal_calibrate::{Decision, Event, Level};
@@ -20,11 +21,11 @@ use poecal_results::shapes::Shapes;
 pub(crate) fn screen(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     html! {
         header {
-            h1 { "Calibration of " (quoted(&file.robot.name, "robot.name")) }
-            p.made { (kinds(file)) " · made by poecal " (quoted(&file.poecal_version, "poecal_version")) }
+            h1 { "Calibration of " (quote_text(&file.robot.name, "robot.name")) }
+            p.made { (kinds(file)) " · made by poecal " (quote_text(&file.poecal_version, "poecal_version")) }
             div.theme hidden role="group" aria-label="Colours" {}
         }
-        (stated(&file.record))
+        (record_markup(&file.record))
         (answer(file))
         (joints::view(file, shapes))
         (look(file))
@@ -35,8 +36,8 @@ pub(crate) fn screen(file: &CalibrationFile, shapes: &Shapes) -> Markup {
 /// Number of joints of each kind, and the ends of the chain.
 fn kinds(file: &CalibrationFile) -> Markup {
     html! {
-        (joints_words(file.joints.iter().map(|joint| joint.kind))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
-        " to " (quoted(&file.robot.tip_link, "robot.tip_link"))
+        (joints_words(file.joints.iter().map(|joint| joint.kind))) " joints, from " (quote_text(&file.robot.base_link, "robot.base_link"))
+        " to " (quote_text(&file.robot.tip_link, "robot.tip_link"))
     }
 }
 
@@ -48,7 +49,7 @@ fn answer(file: &CalibrationFile) -> Markup {
             (before_after(file))
             div.holds { (holds(file)) }
             @if let Some(text) = file.verdict.as_ref().and_then(|it| it.confirmed.as_ref()) {
-                p.note { "Confirmed: " (told(text, "verdict.confirmed")) "." }
+                p.note { "Confirmed: " (sentence_markup(text, "verdict.confirmed")) "." }
             }
             @if let Some(found) = &file.acceptance { (limits_table(found)) }
         }
@@ -69,16 +70,17 @@ fn colour(file: &CalibrationFile) -> (&'static str, String) {
 
 /// The errors before and after on the same rows, and the expected error, all RMS and in one unit.
 fn before_after(file: &CalibrationFile) -> Markup {
-    let leading = Leading::from_calibration(file);
+    let leading = LeadingRows::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return Markup::default() };
-    let has_length = set.calibrated.leading().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
+    let has_length =
+        set.calibrated.leading_value().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
     let measured = |(_, model, key): &ModelRow<'_>| {
         if let Some(pixels) = model.of_pictures(set.count) {
             return html! { (figure(pixels.rms_mm, format_args!("{key}.pixels.rms_mm"))) " mm" };
         }
-        let leading = model.leading();
+        let leading = model.leading_value();
         html! { @if let Some((quantity, error)) = leading {
-            (figure(error.rms, format_args!("{key}.{}.rms", quantity.key()))) (spaced(quantity.unit()))
+            (figure(error.rms, format_args!("{key}.{}.rms", quantity.key()))) (spaced_unit(quantity.unit()))
         } }
     };
     let on = judged_on(file);
@@ -87,7 +89,7 @@ fn before_after(file: &CalibrationFile) -> Markup {
         ol.steps {
             li { b { (measured(before)) } " " span { "before, on " (on) ": " (before.0) (corners) } }
             li { b { (measured(after)) } " " span { "after, on " (on) ": " (after.0) " model" (corners) } }
-            @if let Some(found) = expected(file).filter(|_| has_length) {
+            @if let Some(found) = expected_summary(file).filter(|_| has_length) {
                 li {
                     b { (figure(found.error_mm, "verdict.expected_error_mm")) " mm" } " "
                     span { "expected near measured configurations; 95\u{a0}% below " (figure(found.bound_mm, "verdict.bound95_mm")) "\u{a0}mm" }
@@ -114,7 +116,7 @@ fn holds(file: &CalibrationFile) -> Markup {
     match file.verdict.as_ref().map(|verdict| verdict.level) {
         Some(Level::Good) => html! {
             "It holds " b { "anywhere within the limits" } " of the joints"
-            @if let Some((sigma, key)) = expected(file).and_then(|it| it.anywhere) { ", with " (figure(sigma, key)) " mm (RMS) expected there" }
+            @if let Some((sigma, key)) = expected_summary(file).and_then(|it| it.anywhere) { ", with " (figure(sigma, key)) " mm (RMS) expected there" }
             "."
         },
         Some(Level::InsideSampledRange) => {
@@ -135,7 +137,7 @@ fn holds(file: &CalibrationFile) -> Markup {
 fn reason(file: &CalibrationFile, text: &str) -> Markup {
     let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
     match stated.iter().position(|own| own == text) {
-        Some(k) => told(text, format_args!("verdict.reasons.{k}")),
+        Some(k) => sentence_markup(text, format_args!("verdict.reasons.{k}")),
         None => told_words(text),
     }
 }
@@ -145,7 +147,7 @@ fn look(file: &CalibrationFile) -> Markup {
     let points: Vec<Markup> = look_at(file).iter().filter_map(|point| point_words(file, point)).collect();
     html! {
         @if !file.repairs.is_empty() {
-            section.doubts aria-labelledby="repaired-title" { h2 #repaired-title { "Repaired" } (list(&repaired(file))) }
+            section.doubts aria-labelledby="repaired-title" { h2 #repaired-title { "Repaired" } (list(&repair_sentences(file))) }
         }
         @if !points.is_empty() {
             section.doubts aria-labelledby="doubts-title" { h2 #doubts-title { "Look at" } (list(&points)) }
@@ -154,12 +156,12 @@ fn look(file: &CalibrationFile) -> Markup {
 }
 
 /// Repairs in words, with their gain.
-fn repaired(file: &CalibrationFile) -> Vec<Markup> {
+fn repair_sentences(file: &CalibrationFile) -> Vec<Markup> {
     let one = |(k, found): (usize, &Event)| {
         let key = |name: &str| format!("repairs.{k}.{name}");
         let gain = found.error_before_mm.zip(found.error_after_mm);
         html! {
-            (told(&found.statement, key("statement")))
+            (sentence_markup(&found.statement, key("statement")))
             @if let Some((before, after)) = gain {
                 "; cross-validation " (figure(after, key("error_after_mm"))) " mm (RMS) instead of " (figure(before, key("error_before_mm")))
             }
@@ -169,19 +171,23 @@ fn repaired(file: &CalibrationFile) -> Vec<Markup> {
 }
 
 /// A point of attention with the keys of its quotations.
-fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
+fn point_words(file: &CalibrationFile, point: &ReviewPoint) -> Option<Markup> {
     match point.place {
-        Place::Reason => Some(reason(file, &point.text)),
-        Place::Suspicion(k) => Some(told(&point.text, format_args!("suspicions.{k}.statement"))),
-        Place::Diagnosis(k) => Some(told(&point.text, format_args!("diagnosis.{k}.statement"))),
-        Place::Warning(k) => Some(told(&point.text, format_args!("warnings.{k}"))),
-        Place::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
-        Place::Joint(k) => {
-            let joint = file.corrections.get(k)?;
-            let words = quoted(joint.suspicious.as_deref()?, format_args!("corrections.{k}.suspicious"));
-            Some(html! { (quoted(&joint.joint, format_args!("corrections.{k}.joint"))) ": " (words) })
+        PointSource::Reason => Some(reason(file, &point.text)),
+        PointSource::Suspicion(k) => {
+            Some(sentence_markup(&point.text, format_args!("suspicions.{k}.statement")))
         }
-        Place::HardlyKnown => Some(told_words(&point.text)),
+        PointSource::Diagnosis(k) => {
+            Some(sentence_markup(&point.text, format_args!("diagnosis.{k}.statement")))
+        }
+        PointSource::Warning(k) => Some(sentence_markup(&point.text, format_args!("warnings.{k}"))),
+        PointSource::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
+        PointSource::Joint(k) => {
+            let joint = file.corrections.get(k)?;
+            let words = quote_text(joint.suspicious.as_deref()?, format_args!("corrections.{k}.suspicious"));
+            Some(html! { (quote_text(&joint.joint, format_args!("corrections.{k}.joint"))) ": " (words) })
+        }
+        PointSource::HardlyKnown => Some(told_words(&point.text)),
     }
 }
 

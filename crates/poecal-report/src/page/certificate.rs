@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::html::{HtmlTable, count, facts, figure, quoted};
-use super::short as shorter;
-use crate::acceptance::{counts, plain};
+use super::html::{HtmlTable, count, facts, figure, quote_text};
+use super::short_name as shorter;
+use crate::acceptance::{counts, format_limit};
 use poecal_calibrate::{Acceptance, AcceptedLimit, Decision};
 use poecal_results::record::Record;
 
@@ -14,10 +14,10 @@ use poecal_results::record::Record;
 const SHORT: usize = 16;
 
 /// What is stated of the session; nothing where nothing is.
-pub(crate) fn stated(record: &Record) -> Markup {
+pub(crate) fn record_markup(record: &Record) -> Markup {
     let entries = record.entries();
     let entry = |&(key, label, text): &(&'static str, &'static str, &str)| {
-        (label, quoted(text, format_args!("record.{key}")))
+        (label, quote_text(text, format_args!("record.{key}")))
     };
     let entries: Vec<(&str, Markup)> = entries.iter().map(entry).collect();
     html! { @if !entries.is_empty() { section.record aria-label="Session" { (facts(&entries)) } } }
@@ -71,7 +71,7 @@ pub(crate) fn title_of(found: &Acceptance) -> &'static str {
 fn column((k, limit): (usize, &AcceptedLimit)) -> (String, [Markup; 6]) {
     let key = |name: &str| format!("acceptance.limits.{k}.{name}");
     let unit = if limit.unit == "deg" { "°" } else { " mm" };
-    let most = html! { span data-key=(key("limit")) { (plain(limit.limit)) } (unit) };
+    let most = html! { span data-key=(key("limit")) { (format_limit(limit.limit)) } (unit) };
     let found = html! { b { (figure(limit.found, key("found"))) (unit) } };
     let from = html! { (figure(limit.from, key("from"))) (unit) };
     let to =
@@ -143,7 +143,7 @@ pub(crate) fn pages(title: &str, record: &Record, version: &str) -> Markup {
 
 /// Text within quotes of a style: all but letters, digits and blanks as numbers, so that nothing in it can end the quotes or the style.
 fn in_style(text: &str) -> String {
-    let shown = poecal_numerics::text::visible(text);
+    let shown = poecal_numerics::text::escape_invisible(text);
     let letter = |c: char| match c {
         ' ' => " ".to_owned(),
         c if c.is_ascii_alphanumeric() => c.to_string(),

@@ -3,7 +3,9 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::advice::told_words;
-use super::html::{HtmlTable, capital, count, decimal, figure, figure_or, folded, plots, quoted, section};
+use super::html::{
+    HtmlTable, capital, count, decimal, figure, figure_or, fold_table, plots, quote_text, section,
+};
 use crate::plot::{HeatCell, HeatMap};
 use crate::summary::uncertainty;
 use crate::table::number;
@@ -16,7 +18,7 @@ const SMALL: f64 = 0.1;
 pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     let Some(found) = file.compensation.as_deref() else { return Markup::default() };
     let about = match &found.about {
-        Some(name) => html! { "the axis of " (quoted(name, "compensation.about")) },
+        Some(name) => html! { "the axis of " (quote_text(name, "compensation.about")) },
         None => html! { "the z axis of the base" },
     };
     let caption = html! {
@@ -41,7 +43,7 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
         } @else {
             div.pair { (plots(&[map(found)], caption)) div.tables { (joints(found)) (exceptions(found)) } }
         }
-        (folded("The map as numbers", &table(found)))
+        (fold_table("The map as numbers", &table(found)))
     };
     section("compensation", "What corrected programs gain", &content)
 }
@@ -77,7 +79,7 @@ fn map(found: &CompensationEntry) -> Markup {
     let description = format!(
         "A map over distance from {axis} and height along it: the median distance between nominal and actual tip in each cell. The largest \
          is at {}. The table below has all figures.",
-        worst.map_or_else(String::new, |it| told(found, it))
+        worst.map_or_else(String::new, |it| describe_cell(found, it))
     );
     heat_map(
         found,
@@ -129,7 +131,7 @@ fn heat_map(
             at: [step(it.radius_m), step(it.height_m)],
             value: factor * value(it)?,
             arrow: None,
-            told: told(found, it),
+            told: describe_cell(found, it),
         })
     };
     let map = HeatMap {
@@ -146,7 +148,7 @@ fn heat_map(
 }
 
 /// A cell in words.
-fn told(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
+fn describe_cell(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     let own = &it.displaced;
     let configurations = if own.configurations == 1 {
         "1 configuration".to_owned()
@@ -189,7 +191,7 @@ fn joints(found: &CompensationEntry) -> Markup {
         let key = |name: &str| format!("compensation.joints.{k}.{name}");
         let unit = if it.unit == "deg" { "°" } else { &it.unit };
         table.row(&[
-            &quoted(&it.reading, key("reading")),
+            &quote_text(&it.reading, key("reading")),
             &figure(it.change.median, key("median")),
             &figure(it.change.max, key("max")),
             &unit,

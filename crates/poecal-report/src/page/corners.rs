@@ -3,15 +3,15 @@
 use maud::{Markup, Render, html};
 
 use super::html::{HtmlTable, figure};
-use crate::summary::{Leading, ModelRow};
+use crate::summary::{LeadingRows, ModelRow};
 use poecal_calibrate::{PixelAccuracy, SetAccuracy};
 use poecal_results::calibration_file::CalibrationFile;
 
 /// A statistic of corners: its column, its name in the file, and its value.
-type Statistic = (&'static str, &'static str, fn(&PixelAccuracy) -> f64);
+type CornerStatistic = (&'static str, &'static str, fn(&PixelAccuracy) -> f64);
 
 /// The statistics of a table.
-const COLUMNS: [Statistic; 6] = [
+const COLUMNS: [CornerStatistic; 6] = [
     ("mean, px", "mean_px", |it| it.mean_px),
     ("median, px", "median_px", |it| it.median_px),
     ("RMS, px", "rms_px", |it| it.rms_px),
@@ -43,7 +43,7 @@ pub(crate) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
 
 /// Errors of the corners of pictures that were held out, or else of those fitted.
 pub(crate) fn fact(file: &CalibrationFile) -> Option<Markup> {
-    let leading = Leading::from_calibration(file);
+    let leading = LeadingRows::from_calibration(file);
     let [before, after] = leading.ends()?;
     let (Some(was), Some(is)) = (before.1.pixels, after.1.pixels) else { return None };
     let [of_before, of_after] = [&before.2, &after.2];

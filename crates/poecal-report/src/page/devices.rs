@@ -3,8 +3,8 @@
 
 use maud::{Markup, Render, html};
 
-use super::html::{decimal, figure, quoted};
-use crate::summary::delivered;
+use super::html::{decimal, figure, quote_text};
+use crate::summary::delivered_name;
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::Device;
 use poecal_results::calibration_file::{CalibrationFile, StationEntry};
@@ -71,7 +71,7 @@ pub(crate) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
     };
     html! {
         @if !arrows.is_empty() {
-            " Arrows go from the place of a target by the " (delivered(file)) " model " (arrows.join(", or ")) "."
+            " Arrows go from the place of a target by the " (delivered_name(file)) " model " (arrows.join(", or ")) "."
         }
         @if has_dots {
             " Dots are at the places of targets " @if !arrows.is_empty() { "whose residual is no shift in the picture" } @else { "that were measured" }
@@ -120,13 +120,13 @@ fn names(file: &CalibrationFile, place: Device) -> Markup {
     let names = own.filter_map(|(k, it)| Some((k, it.instrument.as_deref()?)));
     html! {
         @for (n, (k, name)) in names.enumerate() {
-            @if n > 0 { ", " } (quoted(name, format_args!("stations.{k}.instrument")))
+            @if n > 0 { ", " } (quote_text(name, format_args!("stations.{k}.instrument")))
         }
     }
 }
 
 /// Further estimates of a station: a plane's normal, a direction, a radius, zero and scale of distances.
-pub(crate) fn further(file: &CalibrationFile, index: usize, pose: &Pose) -> Markup {
+pub(crate) fn station_details(file: &CalibrationFile, index: usize, pose: &Pose) -> Markup {
     let Some(station) = file.stations.get(index) else { return Markup::default() };
     let place = device_of(station);
     let z = pose.rotation.column(2).into_owned();

@@ -4,10 +4,10 @@ use maud::{Markup, Render, html};
 
 use super::devices::devices;
 use super::html::{HtmlTable, capital, count, facts, figure, figure_or, path, plots, section as titled};
-use super::lead::{kinds_words, sign, spaced};
+use super::leading_error::{kinds_words, sign, spaced_unit};
 use super::{corners, figures};
-use crate::found::found_words;
-use crate::summary::{Leading, ModelRow, cross_validated, delivered, has_terms, none_held_out};
+use crate::fitted_cameras::found_words;
+use crate::summary::{LeadingRows, ModelRow, cross_validated, delivered_name, has_terms, none_held_out};
 use crate::table::{STATISTICS, further_words, models};
 use poecal_calibrate::{Improvements, ModelAccuracy, NoiseSource, SetAccuracy};
 use poecal_model::measurement::{Device, Quantity};
@@ -35,7 +35,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count")
         }
     };
-    let Leading { set, models: rows, without, beside } = Leading::from_calibration(file);
+    let LeadingRows { set, models: rows, without, beside } = LeadingRows::from_calibration(file);
     let on = match held_out {
         Some(_) => format!("on {of}"),
         None => format!("on the fitted rows{without}, since none was held out"),
@@ -65,7 +65,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                     p.note { "Cross-validation: " (figure(found.rms, found.key)) " " (sign(found.quantity.unit())) " (RMS) on rows that were not fitted." }
                 }
                 p.note {
-                    b { "Before" } ": your model, with only tool and device located. " b { "After" } ": the " (delivered(file)) " model, with corrected joint axes"
+                    b { "Before" } ": your model, with only tool and device located. " b { "After" } ": the " (delivered_name(file)) " model, with corrected joint axes"
                     @if has_terms(file) { " and what the joints do beyond geometry; " b { "calibrated" } " is its geometry alone, which a URDF can hold" }
                     ". The gain of the calibration is the difference."
                 }
@@ -94,14 +94,14 @@ fn lead_table(
         table.cells(std::iter::once(label.render()).chain(cells));
     }
     if let Some(gain) = gain {
-        let cells = rows.iter().map(|(.., key)| smaller(gain, key, quantity));
+        let cells = rows.iter().map(|(.., key)| gain_markup(gain, key, quantity));
         table.cells(std::iter::once("smaller by".render()).chain(cells));
     }
     table
 }
 
 /// Ratio of the registered model's errors to a model's, with the interval.
-fn smaller(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
+fn gain_markup(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
     let word = key.rsplit('.').next().unwrap_or_default();
     let of = match word {
         "calibrated" => gain.calibrated.get(quantity),
@@ -183,7 +183,7 @@ fn noise(file: &CalibrationFile) -> Markup {
     html! {
         @for (k, (quantity, sigma)) in noise.sigma.iter().enumerate() {
             @if k > 0 { ", " }
-            (figure(sigma, format_args!("noise.sigma.{}", quantity.key()))) (spaced(quantity.unit())) (further_words(quantity))
+            (figure(sigma, format_args!("noise.sigma.{}", quantity.key()))) (spaced_unit(quantity.unit())) (further_words(quantity))
         }
         @if noise.sigma.iter().any(|(quantity, _)| quantity.components() > 1) { " each component" }
         ", " (source)

@@ -3,9 +3,9 @@
 use maud::{Markup, PreEscaped};
 
 use super::html::capital;
-use super::lead::Lead;
-use crate::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
-use crate::summary::delivered;
+use super::leading_error::LeadingError;
+use crate::plot::{AxisScale, LinePlot, PlotAxis, PlotLine, RangePlot, RangeRow};
+use crate::summary::delivered_name;
 use poecal_model::robot::JointKind;
 use poecal_numerics::threads;
 use poecal_results::calibration_file::CalibrationFile;
@@ -16,17 +16,17 @@ const STEPS: usize = 20;
 
 /// Distribution of the rows' errors for the models.
 pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    let lead = Lead::from_residuals(residuals);
+    let lead = LeadingError::from_residuals(residuals);
     let held_out = file.accuracy.held_out.is_some();
     // With an unknown tool the nominal model predicts nothing, and its errors would occupy most of the axis.
     let line = |name: &str, style: usize, error: &dyn Fn(&ResidualRow) -> Option<f64>| {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-        Line { name: name.to_owned(), style, points: distribution(rows.filter_map(error).collect()) }
+        PlotLine { name: name.to_owned(), style, points: distribution(rows.filter_map(error).collect()) }
     };
     // The same colour as the residuals everywhere else.
     let lines = vec![
-        line("registered", 3, &|row| lead.registered(row)),
-        line(delivered(file), 0, &|row| lead.error(row)),
+        line("registered", 3, &|row| lead.registered_error(row)),
+        line(delivered_name(file), 0, &|row| lead.error(row)),
     ];
     let name = lead.name();
     let plot = LinePlot {
@@ -34,8 +34,8 @@ pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Ma
         description: format!(
             "For each model the share of the rows whose {name} error is below a value; the table beside has the figures."
         ),
-        x: Axis::new(&format!("{name} error, {} (logarithmic)", lead.unit()), Scale::Log),
-        y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
+        x: PlotAxis::new(&format!("{name} error, {} (logarithmic)", lead.unit()), AxisScale::Log),
+        y: PlotAxis::new("share of the rows below, %", AxisScale::Linear).with_values(&[0.0, 100.0]),
         lines,
         mark: None,
     };
@@ -47,7 +47,7 @@ const FAR_OFF: f64 = 4.0;
 
 /// Errors of the delivered model on fitted rows and on those held out.
 pub(crate) fn sets(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    let lead = Lead::from_residuals(residuals);
+    let lead = LeadingError::from_residuals(residuals);
     let errors = |held_out: bool| -> Vec<f64> {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
         rows.filter_map(|row| lead.error(row)).collect()
@@ -58,18 +58,25 @@ pub(crate) fn sets(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         let most = points.iter().find(|[_, share]| *share >= 95.0).zip(points.last());
         most.is_some_and(|([usual, _], [largest, _])| *largest > FAR_OFF * usual)
     });
-    let (scale, words, from) =
-        if is_far_off { (Scale::Log, " (logarithmic)", None) } else { (Scale::Linear, "", Some(0.0)) };
-    let lines =
-        sets.map(|(name, style, errors)| Line { name: name.to_owned(), style, points: distribution(errors) });
+    let (scale, words, from) = if is_far_off {
+        (AxisScale::Log, " (logarithmic)", None)
+    } else {
+        (AxisScale::Linear, "", Some(0.0))
+    };
+    let lines = sets.map(|(name, style, errors)| PlotLine {
+        name: name.to_owned(),
+        style,
+        points: distribution(errors),
+    });
     let name = lead.name();
     let plot = LinePlot {
-        title: format!("{} model: fitted against held-out rows", capital(delivered(file))),
+        title: format!("{} model: fitted against held-out rows", capital(delivered_name(file))),
         description: format!(
             "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
         ),
-        x: Axis::new(&format!("{name} error, {}{words}", lead.unit()), scale).including(from.as_slice()),
-        y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
+        x: PlotAxis::new(&format!("{name} error, {}{words}", lead.unit()), scale)
+            .with_values(from.as_slice()),
+        y: PlotAxis::new("share of the rows below, %", AxisScale::Linear).with_values(&[0.0, 100.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,
     };
@@ -100,7 +107,7 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
         let plot = RangePlot {
             title: title.to_owned(),
             description: "A dot for each joint, one standard deviation to each side as a line; the table has the figures.".to_owned(),
-            x: Axis::new(axis, Scale::Linear).including(&[0.0]),
+            x: PlotAxis::new(axis, AxisScale::Linear).with_values(&[0.0]),
             rows,
         };
         (!plot.rows.is_empty()).then(|| PreEscaped(plot.svg()))
@@ -138,7 +145,7 @@ pub(crate) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
         let plot = RangePlot {
             title: title.to_owned(),
             description: "For each joint its limits as a thin line and what was sampled as a bar; the table has the figures.".to_owned(),
-            x: Axis::new(unit, Scale::Linear),
+            x: PlotAxis::new(unit, AxisScale::Linear),
             rows,
         };
         (!plot.rows.is_empty()).then(|| PreEscaped(plot.svg()))
@@ -153,14 +160,14 @@ pub(crate) fn convergence(file: &CalibrationFile) -> Markup {
     let fits = trace.chunk_by(|before, after| after <= before).map(|fit| {
         let points = fit.iter().enumerate().map(|(k, &value)| [(step + k) as f64, value]).collect();
         step += fit.len();
-        Line { name: "fit".to_owned(), style: 0, points }
+        PlotLine { name: "fit".to_owned(), style: 0, points }
     });
     let plot = LinePlot {
         title: "How the fit converged".to_owned(),
         description: "The mean square of the whitened residual by iteration, a line for each fit; the table below has the figures."
             .to_owned(),
-        x: Axis::new("iteration", Scale::Count),
-        y: Axis::new("mean square of the whitened residual (logarithmic)", Scale::Log),
+        x: PlotAxis::new("iteration", AxisScale::Count),
+        y: PlotAxis::new("mean square of the whitened residual (logarithmic)", AxisScale::Log),
         lines: fits.collect(),
         mark: None,
     };

@@ -4,11 +4,11 @@ use maud::{Markup, PreEscaped, html};
 
 use super::head;
 use super::html::{HtmlTable, decimal, plots, section};
-use crate::fleet::{Line, key, step_words};
-use crate::plot::{Axis, Line as PlotLine, LinePlot, Scale};
+use crate::fleet::{FleetLine, key, step_words};
+use crate::plot::{AxisScale, LinePlot, PlotAxis, PlotLine};
 use poecal_numerics::text::visible_markup;
-use poecal_plan::fleet::{Interval, Series, moving_average};
-use poecal_results::output::Page;
+use poecal_plan::fleet::{FigureSeries, Interval, moving_average};
+use poecal_results::output::PagePieces;
 use poecal_results::record::Record;
 
 /// Robots that tables list at most.
@@ -18,7 +18,7 @@ const DRAWN: usize = 200;
 
 /// The page of a line, complete in itself and without a script.
 #[must_use]
-pub fn fleet_page(line: &Line) -> Page {
+pub fn fleet_page(line: &FleetLine) -> PagePieces {
     let head = head("A line of robots", &Record::default(), env!("CARGO_PKG_VERSION"));
     let rate = |passed: usize, all: usize| if all == 0 { 0.0 } else { 100.0 * passed as f64 / all as f64 };
     let (robots, passed) = (line.rows.len(), line.first_passed);
@@ -36,8 +36,8 @@ pub fn fleet_page(line: &Line) -> Page {
             @if let Some(prior) = &line.prior {
                 (section("prior", "Prior of the line", &html! { p { (prior.words()) "." } }))
             }
-            (failed(line))
-            (outlying(line))
+            (failed_table(line))
+            (outlying_table(line))
             (steps(line))
             (spreads(line))
             (pictures(line))
@@ -47,7 +47,7 @@ pub fn fleet_page(line: &Line) -> Page {
     vec![visible_markup(head).into(), visible_markup(body).into(), "\n</body>\n</html>\n".into()]
 }
 
-fn failed(line: &Line) -> Markup {
+fn failed_table(line: &FleetLine) -> Markup {
     let all: Vec<_> = line.rows.iter().filter(|row| !row.is_passed()).collect();
     let mut table =
         HtmlTable::new("Robots that did not pass, and why", 4, &["serial", "date", "verdict", "because"]);
@@ -56,7 +56,7 @@ fn failed(line: &Line) -> Markup {
         let because = html! { @for (k, piece) in because.split('`').enumerate() { @if k % 2 == 1 { code { (piece) } } @else { (piece) } } };
         table.row(&[
             &row.serial,
-            &unbroken(&row.date),
+            &unbroken_text(&row.date),
             &verdict(row.verdict.as_deref()),
             &sentence(&because),
         ]);
@@ -67,7 +67,7 @@ fn failed(line: &Line) -> Markup {
 }
 
 /// A name or date that is not broken.
-fn unbroken(text: &str) -> Markup {
+fn unbroken_text(text: &str) -> Markup {
     html! { span style="white-space:nowrap" { (text) } }
 }
 
@@ -80,7 +80,7 @@ fn verdict(word: Option<&str>) -> String {
     word.unwrap_or("refused").replace('_', " ")
 }
 
-fn outlying(line: &Line) -> Markup {
+fn outlying_table(line: &FleetLine) -> Markup {
     if line.outliers.is_empty() {
         return Markup::default();
     }
@@ -101,15 +101,15 @@ fn outlying(line: &Line) -> Markup {
     for (serial, figures) in robots.iter().take(LISTED) {
         let row = line.rows.iter().find(|row| key(row) == *serial);
         let link = row.map_or_else(
-            || unbroken(serial),
-            |row| html! { a href={ (row.results) "/report.html" } { (unbroken(serial)) } },
+            || unbroken_text(serial),
+            |row| html! { a href={ (row.results) "/report.html" } { (unbroken_text(serial)) } },
         );
         table.row(&[&link, &sentence(&html! { (figures.join(", ")) })]);
     }
     section("outliers", "Robots beyond six spreads of the line", &html! { (table) })
 }
 
-fn steps(line: &Line) -> Markup {
+fn steps(line: &FleetLine) -> Markup {
     let content = html! {
         ul {
             @for (step, is_station) in &line.steps {
@@ -123,7 +123,7 @@ fn steps(line: &Line) -> Markup {
     if line.steps.is_empty() { Markup::default() } else { section("steps", "Steps of the line", &content) }
 }
 
-fn spreads(line: &Line) -> Markup {
+fn spreads(line: &FleetLine) -> Markup {
     if line.figures.is_empty() {
         return Markup::default();
     }
@@ -157,8 +157,9 @@ fn interval(of: Option<Interval>) -> String {
 }
 
 /// Figures of the robots in the order of measurement: errors, noise, offsets, and common effects of joints.
-fn pictures(line: &Line) -> Markup {
-    let is_drawn = |it: &&Series| (it.joint.is_none() || it.name.ends_with(".offset")) && it.values.len() > 1;
+fn pictures(line: &FleetLine) -> Markup {
+    let is_drawn =
+        |it: &&FigureSeries| (it.joint.is_none() || it.name.ends_with(".offset")) && it.values.len() > 1;
     let all: Vec<Markup> = line.series.iter().filter(is_drawn).map(picture).collect();
     if all.is_empty() {
         return Markup::default();
@@ -168,7 +169,7 @@ fn pictures(line: &Line) -> Markup {
     section("figures", "Figures over the robots", &plots(&all, caption))
 }
 
-fn picture(series: &Series) -> Markup {
+fn picture(series: &FigureSeries) -> Markup {
     let values: Vec<f64> = series.values.iter().map(|it| it.value).collect();
     let step = values.len().div_ceil(DRAWN).max(1);
     let points = |values: Vec<f64>| {
@@ -180,18 +181,18 @@ fn picture(series: &Series) -> Markup {
     let plot = LinePlot {
         title: series.name.clone(),
         description: format!("{} of each robot in the order measured, {}", series.name, series.unit),
-        x: Axis::new("robot, in the order measured", Scale::Count),
-        y: Axis::new(&format!("{}, {}", series.name, series.unit), Scale::Linear).including(lowest),
+        x: PlotAxis::new("robot, in the order measured", AxisScale::Count),
+        y: PlotAxis::new(&format!("{}, {}", series.name, series.unit), AxisScale::Linear).with_values(lowest),
         lines: vec![
             PlotLine { name: "robot".to_owned(), style: 0, points: points(values) },
             PlotLine { name: "moving average".to_owned(), style: 1, points: points(average) },
         ],
         mark: None,
     };
-    PreEscaped(plot.scattered())
+    PreEscaped(plot.draw_scattered())
 }
 
-fn robots_table(line: &Line) -> Markup {
+fn robots_table(line: &FleetLine) -> Markup {
     let names = ["serial", "date", "verdict", "report", "error (RMS), mm", "noise, mm"];
     let mut table = HtmlTable::new("All robots", 4, &names);
     for row in &line.rows {
@@ -200,7 +201,7 @@ fn robots_table(line: &Line) -> Markup {
             html! { @if row.verdict.is_some() { a href={ (row.results) "/report.html" } { "report" } } };
         table.row(&[
             &row.serial,
-            &unbroken(&row.date),
+            &unbroken_text(&row.date),
             &verdict(row.verdict.as_deref()),
             &report,
             &figure(row.error_rms),

@@ -5,12 +5,12 @@ use std::borrow::Cow;
 use serde::Serialize;
 
 use super::devices::{device_of, devices};
-use super::short;
+use super::short_name;
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::Device;
 use poecal_model::robot::{Body, Mount, Robot};
 use poecal_numerics::error::Result;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::{BoardEntry, CalibrationFile, CameraEntry, PoseEntry, StationEntry};
 use poecal_results::residuals::Residuals;
 
@@ -42,7 +42,7 @@ pub(crate) struct FrameData<'a> {
 impl<'a> FrameData<'a> {
     fn new(name: &'a str, body: Body, pose: &Pose, nominal: Option<&Pose>) -> Self {
         FrameData {
-            name: visible(name),
+            name: escape_invisible(name),
             on: body.joint(),
             pose: pose.into(),
             nominal_pose: nominal.map(PoseEntry::from),
@@ -86,7 +86,7 @@ fn corners_of(camera: &CameraEntry) -> [[f64; 3]; 4] {
 }
 
 /// All frames of a calibration.
-pub(crate) struct Frames<'a> {
+pub(crate) struct PageFrames<'a> {
     pub(crate) tip: FrameData<'a>,
     /// Targets of the rows in the order of the residuals, then those that no row names.
     pub(crate) targets: Vec<FrameData<'a>>,
@@ -94,8 +94,12 @@ pub(crate) struct Frames<'a> {
     pub(crate) instruments: Vec<FrameData<'a>>,
 }
 
-impl<'a> Frames<'a> {
-    pub(crate) fn from_calibration(file: &'a CalibrationFile, robot: &Robot, residuals: &'a Residuals) -> Result<Self> {
+impl<'a> PageFrames<'a> {
+    pub(crate) fn from_calibration(
+        file: &'a CalibrationFile,
+        robot: &Robot,
+        residuals: &'a Residuals,
+    ) -> Result<Self> {
         let nominal = file.nominal_robot()?;
         let places = robot.places_of_targets();
         let target = |name: &'a String| {
@@ -114,7 +118,7 @@ impl<'a> Frames<'a> {
         };
         let unused = file.instruments.keys().map(String::as_str).filter(|name| !seeing.contains(name));
         let instrument = |name: &'a str| {
-            let shown = short(&residuals.files, name);
+            let shown = short_name(&residuals.files, name);
             let own = |it: &&StationEntry| it.instrument.as_deref().unwrap_or_default() == name;
             let station = file.stations.iter().find(own);
             if let Some((body, pose)) = mount(robot, &robot.instruments, name) {
@@ -129,7 +133,7 @@ impl<'a> Frames<'a> {
         };
         let instruments = seeing.iter().copied().chain(unused).map(instrument).collect::<Result<_>>()?;
         let tip = FrameData::new("tip", robot.tip_body(), &robot.home, Some(&nominal.home));
-        Ok(Frames { tip, targets, instruments })
+        Ok(PageFrames { tip, targets, instruments })
     }
 }
 

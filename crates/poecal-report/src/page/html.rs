@@ -6,11 +6,11 @@ use crate::table::number;
 
 /// A figure as people read it, with its source in `calibration.json`.
 pub(crate) fn figure(value: f64, key: impl Render) -> Markup {
-    scaled(value, key, 1.0)
+    scaled_figure(value, key, 1.0)
 }
 
 /// A figure that the file holds in another unit: the displayed value is `factor` times that of the file.
-pub(crate) fn scaled(value: f64, key: impl Render, factor: f64) -> Markup {
+pub(crate) fn scaled_figure(value: f64, key: impl Render, factor: f64) -> Markup {
     let shown = value * factor;
     let sign = if shown < 0.0 { "−" } else { "" };
     let scale = (factor != 1.0).then_some(factor);
@@ -32,12 +32,12 @@ pub(crate) fn count(value: usize, key: impl Render) -> Markup {
 }
 
 /// Text from `calibration.json`, unchanged; words between backticks are code.
-pub(crate) fn quoted(text: &str, key: impl Render) -> Markup {
-    html! { span data-key=(key) { (coded(text)) } }
+pub(crate) fn quote_text(text: &str, key: impl Render) -> Markup {
+    html! { span data-key=(key) { (code_markup(text)) } }
 }
 
 /// Text in which words between backticks are code.
-pub(crate) fn coded(text: &str) -> Markup {
+pub(crate) fn code_markup(text: &str) -> Markup {
     html! {
         @for (k, piece) in text.split('`').enumerate() {
             @if k % 2 == 1 { code { (piece) } } @else { (piece) }
@@ -100,11 +100,11 @@ impl HtmlTable {
                 }
             }
         };
-        self.marked(&row);
+        self.push_marked(&row);
     }
 
     /// A row of cells that are marked up already.
-    pub(crate) fn marked(&mut self, row: &Markup) {
+    pub(crate) fn push_marked(&mut self, row: &Markup) {
         row.render_to(&mut self.rows);
         self.rows.push('\n');
     }
@@ -142,7 +142,7 @@ pub(crate) fn facts(facts: &[(&str, Markup)]) -> Markup {
 }
 
 /// A table that is opened on demand, and printed in any case.
-pub(crate) fn folded(summary: &str, table: &HtmlTable) -> Markup {
+pub(crate) fn fold_table(summary: &str, table: &HtmlTable) -> Markup {
     html! { details { summary { (summary) } (table) } }
 }
 

@@ -2,8 +2,8 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted};
-use crate::plot::{Axis, Entry, JoinPlot, Line, List, Scale};
+use super::html::{HtmlTable, count, facts, figure, fold_table, path, plots, quote_text};
+use crate::plot::{AxisScale, JoinPlot, JoinedEntry, JoinedList, PlotAxis, PlotLine};
 use poecal_import::{InputEntry, Join, JoinEntry, MotionEntry, RowEntry};
 
 /// Most pairs that the picture links: about every second pixel of its width.
@@ -74,7 +74,7 @@ fn section(join: &JoinEntry, at: usize) -> Markup {
         h3 { "How the files were joined" }
         (facts(&all))
         (plots(&[PreEscaped(plot(join).svg())], caption))
-        @if !join.pairs.is_empty() { (folded("The pairs as numbers", &table(join))) }
+        @if !join.pairs.is_empty() { (fold_table("The pairs as numbers", &table(join))) }
     }
 }
 
@@ -140,8 +140,8 @@ fn plot(join: &JoinEntry) -> JoinPlot {
             "Joint readings above, measurements below, with lines between the {} pairs; the words beside and the table below say the same.",
             join.paired
         ),
-        x: Axis::new(axis, Scale::Linear),
-        y: Axis::new("speed, mm/s", Scale::Linear).including(&[0.0]),
+        x: PlotAxis::new(axis, AxisScale::Linear),
+        y: PlotAxis::new("speed, mm/s", AxisScale::Linear).with_values(&[0.0]),
         lines,
         lists,
         links,
@@ -150,7 +150,7 @@ fn plot(join: &JoinEntry) -> JoinPlot {
 }
 
 /// Two lists, lines of speed, and the name of the axis.
-type Drawn = ([List; 2], Vec<Line>, &'static str);
+type JoinDrawing = ([JoinedList; 2], Vec<PlotLine>, &'static str);
 
 /// Irregularity of a row, as an index of the irregularities.
 fn find_odd(join: &JoinEntry, measured: bool, number: usize) -> Option<usize> {
@@ -165,32 +165,32 @@ fn find_odd(join: &JoinEntry, measured: bool, number: usize) -> Option<usize> {
 }
 
 /// The rows of both files over time, with the speeds of both.
-fn draw_in_time(join: &JoinEntry, robot: &MotionEntry, measured: &MotionEntry, lag_s: f64) -> Drawn {
+fn draw_in_time(join: &JoinEntry, robot: &MotionEntry, measured: &MotionEntry, lag_s: f64) -> JoinDrawing {
     let motions = [(robot, 0.0), (measured, measured.begin_s - lag_s - robot.begin_s)];
     let lines = motions.iter().enumerate().filter(|it| !it.1.0.speeds_mm_s.is_empty());
     let lines = lines.map(|(at, (motion, later))| speed(motion, *later, NAMES[at], at)).collect();
     let list = |at: usize| {
         let (motion, later) = motions[at];
-        let entry = |(number, span): (usize, &[f64; 2])| Entry {
+        let entry = |(number, span): (usize, &[f64; 2])| JoinedEntry {
             from: span[0] + later,
             to: span[1] + later,
             odd: find_odd(join, at == 1, number),
         };
         let entries = (1..).zip(&motion.stands_s).map(entry).collect();
-        List { name: NAMES[at].to_owned(), present: present(motion, later), entries }
+        JoinedList { name: NAMES[at].to_owned(), present: stream_times(motion, later), entries }
     };
     ([list(0), list(1)], lines, "time since the first joint reading, s")
 }
 
 /// The rows of both files by their numbers.
-fn draw_by_number(join: &JoinEntry) -> Drawn {
+fn draw_by_number(join: &JoinEntry) -> JoinDrawing {
     let list = |at: usize, rows: usize| {
-        let entry = |number: usize| Entry {
+        let entry = |number: usize| JoinedEntry {
             from: number as f64,
             to: number as f64,
             odd: find_odd(join, at == 1, number),
         };
-        List {
+        JoinedList {
             name: NAMES[at].to_owned(),
             present: vec![[1.0, rows as f64]],
             entries: (1..=rows).map(entry).collect(),
@@ -200,7 +200,7 @@ fn draw_by_number(join: &JoinEntry) -> Drawn {
 }
 
 /// Lines between the pairs.
-fn link(join: &JoinEntry, lists: &[List; 2]) -> Vec<[f64; 2]> {
+fn link(join: &JoinEntry, lists: &[JoinedList; 2]) -> Vec<[f64; 2]> {
     let middle = |at: usize, number: usize| {
         let entry = lists[at].entries.get(number.checked_sub(1)?)?;
         Some(0.5 * (entry.from + entry.to))
@@ -221,16 +221,16 @@ fn link(join: &JoinEntry, lists: &[List; 2]) -> Vec<[f64; 2]> {
 }
 
 /// Speeds in the middle of their steps.
-fn speed(motion: &MotionEntry, later: f64, name: &str, style: usize) -> Line {
+fn speed(motion: &MotionEntry, later: f64, name: &str, style: usize) -> PlotLine {
     let points = (0..).zip(&motion.speeds_mm_s);
     let point = |(at, speed): (u32, &Option<f64>)| {
         [(f64::from(at) + 0.5) * motion.step_s + later, speed.unwrap_or(f64::NAN)]
     };
-    Line { name: name.to_owned(), style, points: points.map(point).collect() }
+    PlotLine { name: name.to_owned(), style, points: points.map(point).collect() }
 }
 
 /// The intervals in which a stream has rows.
-fn present(motion: &MotionEntry, later: f64) -> Vec<[f64; 2]> {
+fn stream_times(motion: &MotionEntry, later: f64) -> Vec<[f64; 2]> {
     let mut found = Vec::with_capacity(motion.gaps_s.len() + 1);
     let mut from = 0.0;
     for [begin, end] in &motion.gaps_s {
@@ -242,7 +242,7 @@ fn present(motion: &MotionEntry, later: f64) -> Vec<[f64; 2]> {
 }
 
 /// Used part of a file, which is the one with this number.
-pub(crate) fn taken(entry: &InputEntry, at: usize) -> Markup {
+pub(crate) fn describe_taken(entry: &InputEntry, at: usize) -> Markup {
     let counts: Vec<String> = entry.taken.iter().map(|(name, count)| format!("{count} {name}")).collect();
     let mut words = vec![if counts.is_empty() { "nothing".to_owned() } else { counts.join(", ") }];
     words.extend((!entry.units.is_empty()).then(|| entry.units.join(", ")));
@@ -251,7 +251,7 @@ pub(crate) fn taken(entry: &InputEntry, at: usize) -> Markup {
     html! {
         (words.join("; "))
         @if let Some(understood) = &entry.understood {
-            "; " (quoted(understood, format_args!("inputs.files.{at}.understood")))
+            "; " (quote_text(understood, format_args!("inputs.files.{at}.understood")))
         }
     }
 }

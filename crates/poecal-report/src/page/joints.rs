@@ -3,11 +3,11 @@
 use maud::{Markup, html};
 use nalgebra::Vector3;
 
-use super::devices::{device_of, further, picture_words};
+use super::devices::{device_of, picture_words, station_details};
 use super::figures;
 use super::frames::draws_instruments;
-use super::html::{HtmlTable, decimal, figure, folded, plots, quoted, section};
-use super::sides::still;
+use super::html::{HtmlTable, decimal, figure, fold_table, plots, quote_text, section};
+use super::sides::draw_robot;
 use poecal_model::measurement::Device;
 use poecal_model::robot::{Body, JointKind};
 use poecal_results::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
@@ -27,7 +27,7 @@ pub(crate) fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     }
     html! {
         section.view #view aria-label="The robot in 3D" {
-            div #still.still { (plots(&still(file), "The calibrated robot in the middle of the sampled range.")) }
+            div #still.still { (plots(&draw_robot(file), "The calibrated robot in the middle of the sampled range.")) }
             div #arm.arm {}
             p.note.of-scene {
                 "The " (if draws_instruments(file) { "robot" } else { "arm" })
@@ -37,9 +37,9 @@ pub(crate) fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
             }
             @if !shapes.notes.is_empty() { p.note { (shapes.notes.join(" ").replace('`', "")) } }
             noscript { p.note { "The picture that turns needs JavaScript." } }
-            (folded("The axes as numbers", &table))
-            @if let Some(table) = targets(file) { (folded("The targets as numbers", &table)) }
-            @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
+            (fold_table("The axes as numbers", &table))
+            @if let Some(table) = targets(file) { (fold_table("The targets as numbers", &table)) }
+            @if let Some(table) = stands(file) { (fold_table("What stands where", &table)) }
         }
         "\n"
     }
@@ -57,7 +57,7 @@ fn axis(
     // The point of the axis nearest to the origin.
     let point: [f64; 3] = Vector3::from(screw.w).cross(&Vector3::from(screw.v_m)).into();
     let point = point.map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
-    let name = quoted(&joint.name, format_args!("joints.{k}.name"));
+    let name = quote_text(&joint.name, format_args!("joints.{k}.name"));
     table.row(&[&name, &joint.kind.word(), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
 }
 
@@ -101,7 +101,7 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
         let station = file.stations.iter().position(own);
         let kind = station.and_then(|k| file.stations.get(k)).map_or(Device::Instrument, device_of);
         let pose = robot.base_from(mount);
-        let further = station.map(|k| further(file, k, &pose)).unwrap_or_default();
+        let further = station.map(|k| station_details(file, k, &pose)).unwrap_or_default();
         row(&mount.name, kind.word(), mount.body, Some(pose.translation), &further);
     }
     for mount in &robot.mounted {
@@ -112,7 +112,7 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
         if kind == Device::Pair || file.instruments.contains_key(name) {
             continue;
         }
-        let further = station.base_from_device.pose().map(|pose| further(file, k, &pose));
+        let further = station.base_from_device.pose().map(|pose| station_details(file, k, &pose));
         let place = (kind != Device::Direction).then_some(station.base_from_device.position_m.into());
         row(name, kind.word(), Body::Base, place, &further.unwrap_or_default());
     }
@@ -129,9 +129,9 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Markup {
     let mut table = HtmlTable::new("Corrections of the joints", 2, &head);
     for (k, found) in file.corrections.iter().enumerate() {
         let change = found.change.as_ref();
-        let words = change.map(|it| quoted(&it.words, format_args!("corrections.{k}.change.words")));
+        let words = change.map(|it| quote_text(&it.words, format_args!("corrections.{k}.change.words")));
         table.row(&[
-            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &quote_text(&found.joint, format_args!("corrections.{k}.joint")),
             &words.unwrap_or_else(|| html! { "–" }),
             &figure(found.left_nominal_rms_mm, format_args!("corrections.{k}.left_nominal_rms_mm")),
         ]);
@@ -154,8 +154,8 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Markup {
         @for (k, found) in file.corrections.iter().enumerate() {
             @if let Some(words) = &found.suspicious {
                 p {
-                    strong { "Suspicious: " (quoted(&found.joint, format_args!("corrections.{k}.joint"))) "." } " "
-                    (quoted(words, format_args!("corrections.{k}.suspicious"))) "."
+                    strong { "Suspicious: " (quote_text(&found.joint, format_args!("corrections.{k}.joint"))) "." } " "
+                    (quote_text(words, format_args!("corrections.{k}.suspicious"))) "."
                 }
             }
         }

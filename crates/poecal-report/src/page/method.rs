@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 
 use super::devices::found_words;
-use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted, section};
+use super::html::{HtmlTable, count, facts, figure, fold_table, path, plots, quote_text, section};
 use super::{figures, joins};
 use crate::summary::terms;
 use poecal_calibrate::DeviceFrameKnowledge;
@@ -49,7 +49,7 @@ fn held_and_found(file: &CalibrationFile) -> Markup {
     let held = file.blocks.as_ref().map_or(&[][..], |blocks| &blocks.held);
     let held = html! {
         @for (k, name) in held.iter().enumerate() {
-            @if k > 0 { ", " } (quoted(name, format_args!("blocks.held.{k}")))
+            @if k > 0 { ", " } (quote_text(name, format_args!("blocks.held.{k}")))
         }
     };
     let terms = html! {
@@ -69,15 +69,15 @@ fn solver(file: &CalibrationFile) -> Markup {
     };
     let has_poses = file.accuracy.training.calibrated.get(Quantity::Rotation).is_some();
     let unknowns = html! {
-        (quoted(&solver.formulation, "solver.formulation")) " formulation"
-        @if has_poses { ", " (quoted(&solver.pose_residual, "solver.pose_residual")) " residuals of poses" }
+        (quote_text(&solver.formulation, "solver.formulation")) " formulation"
+        @if has_poses { ", " (quote_text(&solver.pose_residual, "solver.pose_residual")) " residuals of poses" }
     };
     let steps = html! {
         (method_words(&solver.method)) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
         @if solver.restarts > 0 { ", " (count(solver.restarts, "solver.restarts")) " further starts" }
     };
     let version = html! {
-        "poecal " (quoted(&file.poecal_version, "poecal_version")) ", form " (quoted(&file.schema, "schema"))
+        "poecal " (quote_text(&file.poecal_version, "poecal_version")) ", form " (quote_text(&file.schema, "schema"))
     };
     let loss = html! { (file.robust.loss.map_or("least squares", |loss| loss.word())) };
     facts(&[("Unknowns", unknowns), ("Steps", steps), ("Loss", loss), ("Version", version)])
@@ -98,7 +98,7 @@ fn offsets(file: &CalibrationFile) -> Markup {
             (None, Some(value)) => html! { (figure(value, "offset_mm")) " mm" },
             (None, None) => Markup::default(),
         };
-        table.row(&[&quoted(&offset.joint, format_args!("solver.joint_offsets.{k}.joint")), &words]);
+        table.row(&[&quote_text(&offset.joint, format_args!("solver.joint_offsets.{k}.joint")), &words]);
     }
     html! { (table) }
 }
@@ -122,12 +122,12 @@ fn convergence(file: &CalibrationFile) -> Markup {
         if trace.len() > LISTED { "The first iterations as numbers" } else { "The iterations as numbers" };
     html! {
         (plots(&[figures::convergence(file)], "Each line is a fit with weights and rows of its own, so that values of different lines do not compare. At 1 the residuals are as large as the noise that they are weighted by."))
-        (folded(words, &table))
+        (fold_table(words, &table))
     }
 }
 
 /// A checksum with positions for line breaks: after each eight digits.
-fn grouped(hash: &str) -> Markup {
+fn group_digits(hash: &str) -> Markup {
     let is_hash = hash.len() == 64 && hash.bytes().all(|it| it.is_ascii_hexdigit());
     let parts: Vec<&str> =
         if is_hash { (0..8).filter_map(|k| hash.get(8 * k..8 * k + 8)).collect() } else { vec![hash] };
@@ -150,11 +150,11 @@ pub(crate) fn files(
     let mut table = HtmlTable::new("Files that were read", head.len(), head);
     let mut add = |name: &String, shown: Markup, what: &str, of: Option<(&InputEntry, usize)>| {
         let hash = sha256.get(name).map_or("not recorded", String::as_str);
-        let hash = html! { code.hash { (grouped(hash)) } };
+        let hash = html! { code.hash { (group_digits(hash)) } };
         match of {
             Some((entry, at)) => {
                 let rows = count(entry.rows, format_args!("inputs.files.{at}.rows"));
-                table.row(&[&shown, &what, &joins::taken(entry, at), &rows, &hash]);
+                table.row(&[&shown, &what, &joins::describe_taken(entry, at), &rows, &hash]);
             }
             None if has_entries => table.row(&[&shown, &what, &"", &"", &hash]),
             None => table.row(&[&shown, &what, &hash]),
@@ -191,7 +191,7 @@ fn inputs(file: &CalibrationFile) -> Markup {
         @if let Some(command) = &inputs.command {
             h3 { "How to make it again" }
             p { "In the same folder, with files of these checksums and this version, the command writes the same bytes:" }
-            pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
+            pre tabindex="0" { code { (quote_text(command, "inputs.command")) } }
         } @else {
             p.note { "The calibration was not made by the program, or by an earlier version, so no command is recorded." }
         }

@@ -10,7 +10,7 @@ mod certificate;
 mod charts;
 mod compensation;
 mod corners;
-mod corrected;
+mod corrected_model;
 mod data;
 mod devices;
 mod errors;
@@ -20,7 +20,7 @@ mod frames;
 mod html;
 mod joins;
 mod joints;
-mod lead;
+mod leading_error;
 mod method;
 mod paper;
 mod pictures;
@@ -34,7 +34,7 @@ mod trust;
 mod validation;
 
 pub use fleet::fleet_page;
-pub use paper::{Attest, certificate_page, visit_page};
+pub use paper::{CertificateExtras, certificate_page, visit_page};
 pub use plan::plan_page;
 pub use validation::validation_page;
 
@@ -45,7 +45,7 @@ use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::visible_markup;
 use poecal_results::calibration_file::CalibrationFile;
-use poecal_results::output::Page;
+use poecal_results::output::PagePieces;
 use poecal_results::record::Record;
 use poecal_results::residuals::Residuals;
 use poecal_results::shapes::Shapes;
@@ -71,8 +71,8 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// #     pub use poecal_model::simulate::Simulation;
 /// # }
 /// use poecal::{CalibrationOptions, calibrate, CalibrationFile, Inputs, Residuals, Simulation};
-/// use poecal::simulate::{Kind, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
+/// use poecal::simulate::{SessionKind, elbow};
+/// let made = Simulation::default().run(&elbow(), SessionKind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let page = poecal_report::calibration_page(&file, &Residuals::from_calibration(&made.data, &calibration))?.concat();
@@ -83,7 +83,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// # Errors
 /// [`ErrorKind::Problem`] if the residuals are not those of this calibration, [`ErrorKind::Model`] if the file has been changed into no
 /// calibration.
-pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<Page> {
+pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<PagePieces> {
     calibration_page_with(file, residuals, &Shapes::from_calibration(file))
 }
 
@@ -91,9 +91,13 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
 ///
 /// # Errors
 /// As [`calibration_page`].
-pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<Page> {
+pub fn calibration_page_with(
+    file: &CalibrationFile,
+    residuals: &Residuals,
+    shapes: &Shapes,
+) -> Result<PagePieces> {
     check(file, residuals)?;
-    let drawn = data::drawn(residuals);
+    let drawn = data::drawn_rows(residuals);
     let data = data::json(file, residuals, shapes, &drawn)?;
     let charts = charts::Charts::new(residuals, &drawn);
     let title = format!("Calibration of {}", file.robot.name);
@@ -106,7 +110,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
             (errors::section(file, residuals))
             (repairs::sections(file))
             (joints::corrections(file))
-            (corrected::sections(file))
+            (corrected_model::sections(file))
             (compensation::sections(file))
             (pictures::sections(file, residuals))
             (rows::sections(file, &charts)?)
@@ -132,7 +136,7 @@ fn for_the_metrologist(file: &CalibrationFile, charts: &charts::Charts<'_>) -> M
         section aria-labelledby="metrologist-title" {
             details #metrologist {
                 summary { h2 #metrologist-title { "For the metrologist" } }
-                (corrected::tried(file))
+                (corrected_model::tried_sizes_table(file))
                 (trust::for_the_metrologist(file))
                 h3 { "Distribution and weight of the rows" }
                 (rows::for_the_metrologist(charts))
@@ -186,7 +190,7 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
     }
     for (quantity, expected) in accuracy.training.calibrated.iter() {
         let fitted = residuals.rows().iter().filter(|row| !row.held_out);
-        let errors = fitted.filter_map(|row| Some(row.errors.get(quantity)?.calibrated())).collect();
+        let errors = fitted.filter_map(|row| Some(row.errors.get(quantity)?.calibrated_error())).collect();
         let found = Statistic::from_errors(errors).map_or(0.0, |it| it.rms);
         let (expected, unit) = (expected.rms, quantity.unit().symbol());
         if (found - expected).abs() > SAME * expected {
@@ -219,7 +223,7 @@ fn unit(kind: ReadingKind) -> Option<&'static str> {
 }
 
 /// A file's name without its folders, if no other file has that name.
-fn short<'a>(files: &[String], file: &'a str) -> &'a str {
+fn short_name<'a>(files: &[String], file: &'a str) -> &'a str {
     let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
     let own = name(file);
     let same = files.iter().filter(|other| name(other) == own).count();

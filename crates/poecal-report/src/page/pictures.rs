@@ -2,9 +2,9 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::html::{figure, plots, quoted, section};
-use super::short;
-use crate::plot::{Axis, DotPlot, Dots, HeatCell, HeatMap, Scale};
+use super::html::{figure, plots, quote_text, section};
+use super::short_name;
+use crate::plot::{AxisScale, DotPlot, Dots, HeatCell, HeatMap, PlotAxis};
 use crate::summary::has_terms;
 use crate::table::number;
 use poecal_calibrate::{ImageCell, ImageMap};
@@ -27,9 +27,9 @@ pub(crate) fn sections(file: &CalibrationFile, residuals: &Residuals) -> Markup 
     };
     let content = html! {
         @for (k, map) in pictures.images.iter().enumerate() {
-            h3 { "The image of " (quoted(&map.camera, format_args!("pictures.images.{k}.camera"))) }
+            h3 { "The image of " (quote_text(&map.camera, format_args!("pictures.images.{k}.camera"))) }
             div.pair {
-                (plots(&[before(map)], "Corners of all pictures that are not suspected, by the nominal axes, with tool and device fitted."))
+                (plots(&[map_before(map)], "Corners of all pictures that are not suspected, by the nominal axes, with tool and device fitted."))
                 (plots(
                     &[after(map)],
                     "The same by the model that is delivered, with the mean of measured minus predicted as arrows. Arrows that turn about the middle, or \
@@ -38,7 +38,7 @@ pub(crate) fn sections(file: &CalibrationFile, residuals: &Residuals) -> Markup 
             }
             div.pair {
                 (plots(
-                    &[predicted(map)],
+                    &[map_predicted(map)],
                     html! {
                         "How far off a point " (figure(map.distance_mm, format_args!("pictures.images.{k}.distance_mm")))
                         " mm before the camera would be predicted (RMS), by the uncertainty of robot, camera and board together. Where no corners \
@@ -65,7 +65,7 @@ fn map(
             at: cell.at.map(|it| i64::try_from(it).unwrap_or(i64::MAX)),
             value: value(cell)?,
             arrow: arrow(cell),
-            told: told(map, cell),
+            told: describe_cell(map, cell),
         })
     };
     let plot = HeatMap {
@@ -90,7 +90,7 @@ fn after(image: &ImageMap) -> Markup {
     map(image, words, |it| it.after_px, |it| it.mean_px)
 }
 
-fn before(image: &ImageMap) -> Markup {
+fn map_before(image: &ImageMap) -> Markup {
     let words = (
         "Where corners were off before".to_owned(),
         "A map over the image: root mean square distance of the corners of each cell by the nominal axes."
@@ -100,7 +100,7 @@ fn before(image: &ImageMap) -> Markup {
     map(image, words, |it| it.before_px, |_| None)
 }
 
-fn predicted(image: &ImageMap) -> Markup {
+fn map_predicted(image: &ImageMap) -> Markup {
     let words = (
         "How well pixels are predicted".to_owned(),
         "A map over the image: root mean square distance by which a point is predicted off, by the covariance.".to_owned(),
@@ -110,7 +110,7 @@ fn predicted(image: &ImageMap) -> Markup {
 }
 
 /// A cell in words.
-fn told(map: &ImageMap, cell: &ImageCell) -> String {
+fn describe_cell(map: &ImageMap, cell: &ImageCell) -> String {
     let from = |k: usize| cell.at[k] as f64 * map.cell_px;
     let px = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |it| format!("{} px", number(it)));
     format!(
@@ -137,7 +137,7 @@ fn by_picture(file: &CalibrationFile, residuals: &Residuals) -> Option<Markup> {
             let [_, before, calibrated] = corners.models_px;
             let after = corners.corrected_px.filter(|_| corrected).unwrap_or(calibrated);
             let name = match row.id.as_str() {
-                "" => format!("{}:{}", short(&residuals.files, residuals.file(row)), row.line),
+                "" => format!("{}:{}", short_name(&residuals.files, residuals.file(row)), row.line),
                 id => id.to_owned(),
             };
             let several = residuals.targets.len() > 1;
@@ -160,7 +160,7 @@ fn by_picture(file: &CalibrationFile, residuals: &Residuals) -> Option<Markup> {
     let plot = DotPlot {
         title: format!("Corners by picture{which}"),
         description: "For each picture the root mean square distance of its corners from where the model sees them, before and after.".to_owned(),
-        x: Axis::new("px (RMS, logarithmic)", Scale::Log),
+        x: PlotAxis::new("px (RMS, logarithmic)", AxisScale::Log),
         rows: rows.iter().map(|(name, ..)| name.clone()).collect(),
         series: vec![
             Dots { name: "registered".to_owned(), style: 3, values: values(|it| it.1) },

@@ -4,15 +4,15 @@ use maud::{Markup, PreEscaped, html};
 use nalgebra::Vector3;
 
 use super::head;
-use super::html::{HtmlTable, decimal, facts, folded, plots, section};
-use super::sides::{View, pictures};
-use crate::plan::{CURVE_HEAD, Plan};
-use crate::plot::{Arms, Axis, CELLS, Line, LinePlot, Mark, Scale, Strip, StripPlot};
+use super::html::{HtmlTable, decimal, facts, fold_table, plots, section};
+use super::sides::{SideView, pictures};
+use crate::plan::{CURVE_HEAD, PlanReport};
+use crate::plot::{ArmSeries, AxisMark, AxisScale, CELLS, LinePlot, PlotAxis, PlotLine, StripPlot, StripRow};
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::text::visible_markup;
-use poecal_plan::plan::{CurvePoint, Plan as Found, PlanOptions, RowPart, Sight, skeleton};
+use poecal_plan::plan::{CurvePoint, DeviceView, Plan as Found, PlanOptions, RowPurpose, skeleton};
 use poecal_results::model::Model;
-use poecal_results::output::Page;
+use poecal_results::output::PagePieces;
 use poecal_results::record::Record;
 
 /// Points of the rim of a device's cone.
@@ -23,7 +23,7 @@ const ARMS: usize = 8;
 /// The page of a plan, complete in itself and without a script. It shows the robot in some configurations and the targets of all, the device's field
 /// of view, errors by number, and the sampled part of each joint's range.
 #[must_use]
-pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Plan) -> Page {
+pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &PlanReport) -> PagePieces {
     let robot = &model.robot;
     let title = format!("Plan of a session of {}", robot.name);
     let head = head(&title, &Record::default(), env!("CARGO_PKG_VERSION"));
@@ -51,23 +51,23 @@ pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Pla
 
 fn arms(robot: &Robot, options: &PlanOptions, found: &Found) -> Markup {
     let rows = found.rows.iter().filter(|row| !row.returns);
-    let skeletons: Vec<(RowPart, Skeleton)> =
+    let skeletons: Vec<(RowPurpose, Skeleton)> =
         rows.map(|row| (row.part, skeleton(robot, &row.readings))).collect();
-    let chosen = apart(&skeletons);
+    let chosen = spread_out_rows(&skeletons);
     let caption = format!(
         "Dots: the target in all {} configurations. Lines: the robot in {} of them that are far apart, between the frames of its joints. Only \
          configurations are checked, never the way between them.",
         skeletons.len(),
         chosen.len()
     );
-    plots(&pictures(|view| drawn(view, options, (&skeletons, &chosen))), caption)
+    plots(&pictures(|view| draw_arms(view, options, (&skeletons, &chosen))), caption)
 }
 
 /// Lines of a robot in one configuration.
 type Skeleton = Vec<[Vector3<f64>; 2]>;
 
 /// A few configurations with distant targets: each has the largest distance from all before.
-fn apart(skeletons: &[(RowPart, Skeleton)]) -> Vec<usize> {
+fn spread_out_rows(skeletons: &[(RowPurpose, Skeleton)]) -> Vec<usize> {
     let ends: Vec<(usize, Vector3<f64>)> =
         skeletons.iter().enumerate().filter_map(|(k, (_, lines))| Some((k, lines.last()?[1]))).collect();
     let mut chosen: Vec<(usize, Vector3<f64>)> = ends.first().copied().into_iter().collect();
@@ -85,25 +85,25 @@ fn apart(skeletons: &[(RowPart, Skeleton)]) -> Vec<usize> {
     chosen.into_iter().map(|(k, _)| k).collect()
 }
 
-fn drawn(
-    view: &View,
+fn draw_arms(
+    view: &SideView,
     options: &PlanOptions,
-    (skeletons, chosen): (&[(RowPart, Skeleton)], &[usize]),
-) -> Vec<Arms> {
-    let flat = |at: &Vector3<f64>| view.flat(at);
+    (skeletons, chosen): (&[(RowPurpose, Skeleton)], &[usize]),
+) -> Vec<ArmSeries> {
+    let flat = |at: &Vector3<f64>| view.project(at);
     let lines = |[a, b]: &[Vector3<f64>; 2]| [flat(a), flat(b)];
-    let of = |part: RowPart, name: &str, style: usize| {
+    let of = |part: RowPurpose, name: &str, style: usize| {
         let own = || skeletons.iter().enumerate().filter(|(_, it)| it.0 == part);
         let ends = own().filter_map(|(_, it)| it.1.last()).map(|line| flat(&line[1])).collect();
         let arms = own().filter(|(k, _)| chosen.contains(k));
         let lines = arms.flat_map(|(_, it)| &it.1).map(lines).collect();
-        Arms { name: name.to_owned(), style, lines, is_thin: true, points: ends }
+        ArmSeries { name: name.to_owned(), style, lines, is_thin: true, points: ends }
     };
-    let mut arms = vec![of(RowPart::Judge, "to judge by", 1), of(RowPart::Fit, "to fit", 0)];
+    let mut arms = vec![of(RowPurpose::Judge, "to judge by", 1), of(RowPurpose::Fit, "to fit", 0)];
     arms.retain(|it| !it.points.is_empty());
     if let Some(sight) = &options.conditions.sight {
         let place = vec![flat(&sight.place)];
-        arms.push(Arms {
+        arms.push(ArmSeries {
             name: "device".to_owned(),
             style: 2,
             lines: cone(sight, &flat),
@@ -114,7 +114,7 @@ fn drawn(
     let boxes: Vec<[[f64; 2]; 2]> =
         options.conditions.keep_out.iter().flat_map(|corners| outline(view, corners)).collect();
     if !boxes.is_empty() {
-        arms.push(Arms {
+        arms.push(ArmSeries {
             name: "keep out".to_owned(),
             style: 3,
             lines: boxes,
@@ -126,7 +126,7 @@ fn drawn(
 }
 
 /// The device's cone: its rim half-way to its aim, and lines to it.
-fn cone(sight: &Sight, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
+fn cone(sight: &DeviceView, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let Some((at, half)) = sight.cone else { return Vec::new() };
     let axis = 0.5 * (at - sight.place);
     let middle = sight.place + axis;
@@ -146,27 +146,27 @@ fn cone(sight: &Sight, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 
 }
 
 /// The four sides of a box.
-fn outline(view: &View, corners: &[[f64; 3]; 2]) -> Vec<[[f64; 2]; 2]> {
-    let [low, high] = corners.map(|corner| view.flat(&corner.into()));
+fn outline(view: &SideView, corners: &[[f64; 3]; 2]) -> Vec<[[f64; 2]; 2]> {
+    let [low, high] = corners.map(|corner| view.project(&corner.into()));
     let around = [low, [high[0], low[1]], high, [low[0], high[1]]];
     (0..4).map(|k| [around[k], around[(k + 1) % 4]]).collect()
 }
 
-fn curve(found: &Found, told: &Plan) -> Markup {
+fn curve(found: &Found, told: &PlanReport) -> Markup {
     let points = |of: fn(&CurvePoint) -> f64| -> Vec<[f64; 2]> {
         found.curve.iter().map(|point| [point.count as f64, 1e3 * of(point)]).collect()
     };
-    let line = |name: &str, style, of| Line { name: name.to_owned(), style, points: points(of) };
+    let line = |name: &str, style, of| PlotLine { name: name.to_owned(), style, points: points(of) };
     let plot = LinePlot {
         title: "Expected error by number of configurations".to_owned(),
         description: "Expected error (RMS over the workspace) of planned lists of other lengths".to_owned(),
-        x: Axis::new("configurations to fit", Scale::Linear).including(&[0.0]),
-        y: Axis::new("expected error, mm", Scale::Log),
+        x: PlotAxis::new("configurations to fit", AxisScale::Linear).with_values(&[0.0]),
+        y: PlotAxis::new("expected error, mm", AxisScale::Log),
         lines: vec![
             line("calibrated", 0, |it| it.expected.calibrated_m()),
             line("corrected", 1, |it| it.expected.corrected_m()),
         ],
-        mark: Some(Mark { at: told.planned() as f64, label: "planned".to_owned() }),
+        mark: Some(AxisMark { at: told.planned_count() as f64, label: "planned".to_owned() }),
     };
     let mut table = HtmlTable::new(
         "Expected errors, mm; removable: the part that more rows would remove",
@@ -182,13 +182,13 @@ fn curve(found: &Found, told: &Plan) -> Markup {
     html! {
         p { (told.advice()) }
         (plots(&[PreEscaped(plot.svg())], "More configurations remove a part of the error; the rest is robot error that such a model does not describe."))
-        (folded("The same as numbers", &table))
+        (fold_table("The same as numbers", &table))
     }
 }
 
 fn joints(robot: &Robot, found: &Found) -> Markup {
     let names = robot.reading_names();
-    let own = || found.rows.iter().filter(|row| row.part == RowPart::Fit && !row.returns);
+    let own = || found.rows.iter().filter(|row| row.part == RowPurpose::Fit && !row.returns);
     let strip = |(at, name): (usize, &String)| {
         let kind = robot.reading_kind(name);
         let values = || own().filter_map(|row| row.readings.get(at).copied());
@@ -204,9 +204,10 @@ fn joints(robot: &Robot, found: &Found) -> Markup {
                 *count += 1;
             }
         }
-        let end =
-            |value: f64| format!("{} {}", decimal(kind.shown(value), 0), kind.suffix()).trim().to_owned();
-        Strip { name: name.clone(), ends: [end(low), end(high)], counts }
+        let end = |value: f64| {
+            format!("{} {}", decimal(kind.in_shown_unit(value), 0), kind.suffix()).trim().to_owned()
+        };
+        StripRow { name: name.clone(), ends: [end(low), end(high)], counts }
     };
     let plot = StripPlot {
         title: "Configurations to fit, between the limits of each joint".to_owned(),
@@ -226,10 +227,11 @@ fn rows(robot: &Robot, found: &Found) -> Markup {
     for (at, row) in found.rows.iter().enumerate() {
         let part = match (row.returns, row.part) {
             (true, _) => "return to the first",
-            (false, RowPart::Fit) => "fit",
-            (false, RowPart::Judge) => "judge",
+            (false, RowPurpose::Fit) => "fit",
+            (false, RowPurpose::Judge) => "judge",
         };
-        let cells = row.readings.iter().zip(&kinds).map(|(value, kind)| decimal(kind.shown(*value), 2));
+        let cells =
+            row.readings.iter().zip(&kinds).map(|(value, kind)| decimal(kind.in_shown_unit(*value), 2));
         table.cells([(at + 1).to_string(), part.to_owned()].into_iter().chain(cells));
     }
     html! { (table) }

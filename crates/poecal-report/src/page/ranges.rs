@@ -50,7 +50,7 @@ fn map_of_parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> 
     let mut table = HtmlTable::new("Expected errors by parts of each joint's range, mm (RMS)", 1, &head);
     for joint in &file.joints {
         let unit = unit_of(file, &joint.name);
-        table.marked(&html! {
+        table.push_marked(&html! {
             tr {
                 th scope="row" { (joint.name) }
                 @for (k, part) in of(&joint.name) { (map_cell((k, key), part, worst, unit)) }

@@ -2,8 +2,8 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::html::{HtmlTable, count, figure, figure_or, plots, quoted, section};
-use crate::plot::{Axis, Line, LinePlot, Mark, Scale};
+use super::html::{HtmlTable, count, figure, figure_or, plots, quote_text, section};
+use crate::plot::{AxisMark, AxisScale, LinePlot, PlotAxis, PlotLine};
 use poecal_calibrate::{Event, EventKind};
 use poecal_results::calibration_file::CalibrationFile;
 
@@ -19,10 +19,10 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     );
     for (k, found) in file.repairs.iter().enumerate() {
         let key = |name: &str| format!("repairs.{k}.{name}");
-        let what = html! { (words(found.kind)) @if !found.name.is_empty() { " " (quoted(&found.name, key("name"))) } };
+        let what = html! { (words(found.kind)) @if !found.name.is_empty() { " " (quote_text(&found.name, key("name"))) } };
         let cells = [
             what,
-            quoted(&found.from, key("from")),
+            quote_text(&found.from, key("from")),
             count(found.from_row, key("from_row")),
             figure_or(found.size_mm, key("size_mm"), ""),
             figure_or(found.size_deg, key("size_deg"), ""),
@@ -56,7 +56,7 @@ pub(crate) fn words(kind: EventKind) -> &'static str {
 }
 
 fn picture(found: &Event) -> Markup {
-    let line = |name: &str, style: usize, at: usize| Line {
+    let line = |name: &str, style: usize, at: usize| PlotLine {
         name: name.to_owned(),
         style,
         points: found.residuals.iter().map(|it| [it[0], it[at]]).collect(),
@@ -67,10 +67,10 @@ fn picture(found: &Event) -> Markup {
         description:
             "The error of each row by the models before and after the repair; the table has the figures."
                 .to_owned(),
-        x: Axis::new("row", Scale::Count),
-        y: Axis::new("error, mm (logarithmic)", Scale::Log),
+        x: PlotAxis::new("row", AxisScale::Count),
+        y: PlotAxis::new("error, mm (logarithmic)", AxisScale::Log),
         lines: vec![line("before", 1, 1), line("after", 0, 2)],
-        mark: is_step.then(|| Mark { at: found.from_row as f64, label: "from here".to_owned() }),
+        mark: is_step.then(|| AxisMark { at: found.from_row as f64, label: "from here".to_owned() }),
     };
     PreEscaped(plot.svg())
 }

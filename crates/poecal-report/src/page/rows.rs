@@ -6,10 +6,10 @@ use super::charts::{Charts, by_joint, chart};
 use super::data::{MOST_ROWS, keep_first, place};
 use super::devices::devices;
 use super::errors::{error_table, error_words};
-use super::html::{HtmlTable, capital, count, decimal, figure, figure_or, folded, section};
-use super::lead::{Lead, component_words, sign, spaced};
-use super::{figures, readings_of, short};
-use crate::summary::delivered;
+use super::html::{HtmlTable, capital, count, decimal, figure, figure_or, fold_table, section};
+use super::leading_error::{LeadingError, component_words, sign, spaced_unit};
+use super::{figures, readings_of, short_name};
+use crate::summary::delivered_name;
 use crate::table::{further_words, number};
 use poecal_calibrate::Statistic;
 use poecal_model::measurement::{Device, Quantity};
@@ -36,7 +36,7 @@ fn errors(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
     let lead = charts.lead.name();
     let by_joint = by_joint(charts, file)?;
     let content = html! {
-        p { "Residual of each measurement: measured minus predicted by the " (delivered(file)) " model" (axes_words(file, residuals)) "." }
+        p { "Residual of each measurement: measured minus predicted by the " (delivered_name(file)) " model" (axes_words(file, residuals)) "." }
         @if shown < all {
             p.note {
                 "Charts draw " (shown) " of " (all) " rows: the suspected ones, those of the largest errors, and others at equal distances, "
@@ -56,7 +56,7 @@ fn errors(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
             &charts.by_row(),
         ))
         (chart("components", "By component", &component_note(residuals), &charts.by_component()))
-        (folded("The components as numbers", &component_table(residuals)))
+        (fold_table("The components as numbers", &component_table(residuals)))
         (chart(
             "joints",
             "By joint",
@@ -64,7 +64,7 @@ fn errors(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
              gear or an encoder that is not modelled; a curve that follows the load is a flexible link.",
             &by_joint,
         ))
-        (folded("Errors by parts of each joint's values", &joint_table(file, residuals)))
+        (fold_table("Errors by parts of each joint's values", &joint_table(file, residuals)))
         div.pair {
             (chart(
                 "histogram",
@@ -105,13 +105,13 @@ pub(crate) fn for_the_metrologist(charts: &Charts<'_>) -> Markup {
                 &charts.leverage(),
             ))
         }
-        @if let Some(table) = leverage_table(charts.residuals) { (folded("The fitted rows of largest leverage", &table)) }
+        @if let Some(table) = leverage_table(charts.residuals) { (fold_table("The fitted rows of largest leverage", &table)) }
     }
 }
 
 /// Axes of the residuals, if they have any.
 fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
-    let has_axes = residuals.measured().iter().any(|it| it.is_of_pose());
+    let has_axes = residuals.measured_quantities().iter().any(|it| it.is_of_pose());
     match (has_axes, devices(file) == [Device::Pair]) {
         (false, _) => "",
         (true, false) => ", in the axes of the measuring device",
@@ -121,7 +121,7 @@ fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
 
 /// Meaning of the components of each quantity.
 fn component_note(residuals: &Residuals) -> String {
-    let all: Vec<&str> = residuals.measured().iter().map(|it| it.residual_words()).collect();
+    let all: Vec<&str> = residuals.measured_quantities().iter().map(|it| it.residual_words()).collect();
     format!(
         "Residuals {}. A mean away from zero in held-out rows shows that something moved: the device, what it is fixed to, the tool.",
         all.join("; ")
@@ -157,7 +157,7 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
         2,
         &["component", "rows", "number", "mean", "RMS", "largest"],
     );
-    let measured = residuals.measured().into_iter();
+    let measured = residuals.measured_quantities().into_iter();
     let components: Vec<(Quantity, usize)> = measured
         .flat_map(|quantity| (0..quantity.components()).map(move |component| (quantity, component)))
         .collect();
@@ -182,10 +182,10 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
 
 /// Errors by equal parts of each joint's sampled range.
 fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
-    let lead = Lead::from_residuals(residuals);
+    let lead = LeadingError::from_residuals(residuals);
     let of = format!(
         "of the {} model, {} (RMS), and number of rows by parts of each reading",
-        delivered(file),
+        delivered_name(file),
         lead.unit()
     );
     let caption = capital(&format!("{} error {of}", lead.name()));
@@ -221,10 +221,10 @@ fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
 }
 
 /// The origin of a row as in the calibration file; rows that came from no file have none.
-fn named(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Markup {
+fn row_place(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Markup {
     match file {
         "" => html! { "–" },
-        file => html! { (short(&residuals.files, file)) ":" (count(row as usize, key)) },
+        file => html! { (short_name(&residuals.files, file)) ":" (count(row as usize, key)) },
     }
 }
 
@@ -293,7 +293,7 @@ fn off_alike(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     for (k, it) in found.iter().enumerate().take(LISTED) {
         let key = |name: &str| format!("suspected_configurations.{k}.{name}");
         table.cells([
-            named(residuals, &it.file, it.row, key("row")),
+            row_place(residuals, &it.file, it.row, key("row")),
             count(it.rows, key("rows")),
             count(it.targets, key("targets")),
             figure(it.least_mm, key("least_mm")),
@@ -331,7 +331,7 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
             OutlierSet::Fit => "fitted",
             OutlierSet::HeldOut => "held out",
         };
-        let place = named(residuals, &found.file, found.row, format_args!("outliers.{k}.row"));
+        let place = row_place(residuals, &found.file, found.row, format_args!("outliers.{k}.row"));
         let mut cells = vec![place, set.render()];
         let residuals = measured.iter().map(|it| (format!("residual.{}", it.key()), found.residual.get(*it)));
         cells.extend(residuals.map(|(key, residual)| figure(residual, &key)));
@@ -347,7 +347,7 @@ fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         found.mean.repeatability.iter().map(|(quantity, _)| repeatability_table(found, residuals, quantity));
     let tables: Vec<HtmlTable> = tables.collect();
     let worst = found.worst_repeatability.iter().map(|(quantity, worst)| {
-        html! { (figure(worst, format_args!("repeatability.worst_repeatability.{}", quantity.key()))) (spaced(quantity.unit())) (further_words(quantity)) }
+        html! { (figure(worst, format_args!("repeatability.worst_repeatability.{}", quantity.key()))) (spaced_unit(quantity.unit())) (further_words(quantity)) }
     });
     let worst: Vec<Markup> = worst.collect();
     let content = html! {
@@ -383,7 +383,7 @@ fn repeatability_table(found: &RepeatabilityEntry, residuals: &Residuals, quanti
     let listed = listed.filter(|(_, pose)| pose.own.repeatability.get(quantity).is_some());
     for (k, pose) in listed.take(LISTED) {
         let key = format!("repeatability.listed.{k}");
-        let place = named(residuals, &pose.file, pose.row, format_args!("{key}.row"));
+        let place = row_place(residuals, &pose.file, pose.row, format_args!("{key}.row"));
         let rows = count(pose.rows, format_args!("{key}.rows"));
         table.cells([place, rows].into_iter().chain(figures(pose.own.by_key(quantity), &key)));
     }

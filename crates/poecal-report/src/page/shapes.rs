@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::PoseEntry;
-use poecal_results::shapes::{Form, Mesh, Shape};
+use poecal_results::shapes::{Mesh, Shape, ShapeForm};
 
 /// A shape on a body.
 #[derive(Serialize)]
@@ -35,15 +35,15 @@ enum FormData {
 impl<'a> ShapeData<'a> {
     pub(crate) fn from_shape(shape: &'a Shape) -> Self {
         ShapeData {
-            link: visible(&shape.link),
+            link: escape_invisible(&shape.link),
             on: shape.body.joint(),
             pose: (&shape.pose).into(),
             nominal_pose: (&shape.nominal_pose).into(),
             form: match shape.form {
-                Form::Box(sides) => FormData::Box(sides),
-                Form::Cylinder(sizes) => FormData::Cylinder(sizes),
-                Form::Sphere(radius) => FormData::Sphere(radius),
-                Form::Mesh(index) => FormData::Mesh(index),
+                ShapeForm::Box(sides) => FormData::Box(sides),
+                ShapeForm::Cylinder(sizes) => FormData::Cylinder(sizes),
+                ShapeForm::Sphere(radius) => FormData::Sphere(radius),
+                ShapeForm::Mesh(index) => FormData::Mesh(index),
             },
         }
     }

@@ -3,32 +3,32 @@
 use maud::{Markup, PreEscaped};
 use nalgebra::Vector3;
 
-use crate::plot::{ArmPlot, Arms};
+use crate::plot::{ArmPlot, ArmSeries};
 use poecal_plan::plan::skeleton;
 use poecal_results::calibration_file::CalibrationFile;
 
 /// A picture from one side: the horizontal and the vertical coordinate.
-pub(crate) struct View {
+pub(crate) struct SideView {
     title: &'static str,
     axes: [usize; 2],
     names: [&'static str; 2],
 }
 
-impl View {
+impl SideView {
     /// Projection of a point.
-    pub(crate) fn flat(&self, at: &Vector3<f64>) -> [f64; 2] {
+    pub(crate) fn project(&self, at: &Vector3<f64>) -> [f64; 2] {
         self.axes.map(|axis| at[axis])
     }
 }
 
-const VIEWS: [View; 2] = [
-    View { title: "From the side", axes: [0, 2], names: ["x of the base, m", "z, m"] },
-    View { title: "From above", axes: [0, 1], names: ["x of the base, m", "y, m"] },
+const VIEWS: [SideView; 2] = [
+    SideView { title: "From the side", axes: [0, 2], names: ["x of the base, m", "z, m"] },
+    SideView { title: "From above", axes: [0, 1], names: ["x of the base, m", "y, m"] },
 ];
 
 /// Both pictures.
-pub(crate) fn pictures(arms: impl Fn(&View) -> Vec<Arms>) -> Vec<Markup> {
-    let one = |view: &View| {
+pub(crate) fn pictures(arms: impl Fn(&SideView) -> Vec<ArmSeries>) -> Vec<Markup> {
+    let one = |view: &SideView| {
         let plot = ArmPlot {
             title: view.title.to_owned(),
             description: format!("{}: the robot as lines between the frames of its joints", view.title),
@@ -42,7 +42,7 @@ pub(crate) fn pictures(arms: impl Fn(&View) -> Vec<Arms>) -> Vec<Markup> {
 }
 
 /// The calibrated robot in the middle of the sampled range; empty for a file without a valid robot.
-pub(crate) fn still(file: &CalibrationFile) -> Vec<Markup> {
+pub(crate) fn draw_robot(file: &CalibrationFile) -> Vec<Markup> {
     let Ok(robot) = file.robot() else { return Vec::new() };
     let middle = |name: &String| {
         let joint = robot.joints.iter().find(|joint| joint.reading.name == *name)?;
@@ -53,8 +53,8 @@ pub(crate) fn still(file: &CalibrationFile) -> Vec<Markup> {
         robot.reading_names().iter().map(|name| middle(name).unwrap_or_default()).collect();
     let lines = skeleton(&robot, &readings);
     pictures(|view| {
-        let ends = lines.iter().map(|line| view.flat(&line[1])).collect();
-        let lines = lines.iter().map(|[a, b]| [view.flat(a), view.flat(b)]).collect();
-        vec![Arms { name: "calibrated".to_owned(), style: 0, lines, is_thin: false, points: ends }]
+        let ends = lines.iter().map(|line| view.project(&line[1])).collect();
+        let lines = lines.iter().map(|[a, b]| [view.project(a), view.project(b)]).collect();
+        vec![ArmSeries { name: "calibrated".to_owned(), style: 0, lines, is_thin: false, points: ends }]
     })
 }

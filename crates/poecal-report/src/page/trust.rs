@@ -3,11 +3,13 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{HtmlTable, count, figure, figure_or, folded, list, plots, quoted, scaled, section};
-use super::lead::{sign, spaced};
+use super::html::{
+    HtmlTable, count, figure, figure_or, fold_table, list, plots, quote_text, scaled_figure, section,
+};
+use super::leading_error::{sign, spaced_unit};
 use super::ranges::{self, unit_of};
 use crate::shade;
-use crate::summary::{cross_validated, delivered, has_terms, uncertainty};
+use crate::summary::{cross_validated, delivered_name, has_terms, uncertainty};
 use poecal_calibrate::NoiseSource;
 use poecal_fit::analysis::Direction;
 use poecal_fit::uncertainty::Attribution;
@@ -18,18 +20,18 @@ use poecal_results::calibration_file::{
 
 pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     let content = html! {
-        @if let Some((found, key)) = uncertainty(file) { (expected(file, found, key)) }
+        @if let Some((found, key)) = uncertainty(file) { (expected_table(file, found, key)) }
         (cross_validation(file))
         @if !file.coverage.is_empty() { (coverage(file)) }
         @if let Some((found, key)) = uncertainty(file).filter(|(it, _)| !it.parts.is_empty()) { (ranges::parts(file, found, key)) }
-        (determined(file))
+        (determined_markup(file))
     };
     section("trust", "How far to trust it", &content)
 }
 
-fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Markup {
+fn expected_table(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Markup {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
-    let title = format!("Expected errors of positions that the {} model predicts, mm", delivered(file));
+    let title = format!("Expected errors of positions that the {} model predicts, mm", delivered_name(file));
     let mut table = HtmlTable::new(&title, 1, &head);
     for (words, set, key) in
         [("measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
@@ -42,7 +44,7 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
             &figure(set.worst_bound95_position_mm, "worst_bound95_position_mm"),
         ]);
     }
-    let leading = file.accuracy.training.calibrated.leading().map(|(quantity, _)| quantity);
+    let leading = file.accuracy.training.calibrated.leading_value().map(|(quantity, _)| quantity);
     let source = leading.and_then(|leading| Some((leading, *found.residuals.get(&leading)?)));
     html! {
         (table)
@@ -50,7 +52,7 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
             @match source {
                 Attribution::Robot => {
                     (figure_or(found.discrepancy.get(leading), format_args!("{of}.model_error.{}", leading.key()), "–"))
-                    (spaced(leading.unit()))
+                    (spaced_unit(leading.unit()))
                     " per component: the error of the model, by residuals and cross-validation. "
                     @if matches!(file.noise.source, NoiseSource::Given | NoiseSource::Rows) {
                         "The stated noise explains a small part of the residuals only; the rest counts as robot error."
@@ -112,7 +114,7 @@ fn blocks(found: &CrossValidationEntry) -> Markup {
     let mut table = HtmlTable::new("Fitted rows, predicted by calibrated models of the others", 1, &head);
     let mut add = |entry: &LeftOutEntry, key: &str| {
         let mut cells = vec![
-            quoted(&entry.left_out, format_args!("{key}.left_out")),
+            quote_text(&entry.left_out, format_args!("{key}.left_out")),
             count(entry.rows, format_args!("{key}.rows")),
         ];
         let errors = measured.iter().map(|(quantity, own)| (entry.rms.get(*quantity), own));
@@ -131,19 +133,19 @@ fn blocks(found: &CrossValidationEntry) -> Markup {
             "Fitted rows, predicted by fits of the others: "
             @for (k, (quantity, own)) in measured.iter().enumerate() {
                 @if k > 0 { ", " }
-                (figure_or(found.random.rms.get(*quantity), format_args!("cross_validation.random.{own}"), "–")) (spaced(quantity.unit()))
+                (figure_or(found.random.rms.get(*quantity), format_args!("cross_validation.random.{own}"), "–")) (spaced_unit(quantity.unit()))
             }
             " (RMS) where random rows were left out"
             @if let Some((k, worst)) = worst {
-                "; worst where " (quoted(&worst.left_out, format_args!("cross_validation.blocked.{k}.left_out"))) " was left out: "
+                "; worst where " (quote_text(&worst.left_out, format_args!("cross_validation.blocked.{k}.left_out"))) " was left out: "
                 @for (at, (quantity, own)) in measured.iter().enumerate() {
                     @if at > 0 { ", " }
-                    (figure_or(worst.rms.get(*quantity), format_args!("cross_validation.blocked.{k}.{own}"), "–")) (spaced(quantity.unit()))
+                    (figure_or(worst.rms.get(*quantity), format_args!("cross_validation.blocked.{k}.{own}"), "–")) (spaced_unit(quantity.unit()))
                 }
             }
             ". Where a block is much worse than random rows, do not trust the model in that part of the range."
         }
-        (folded("All blocks", &table))
+        (fold_table("All blocks", &table))
     }
 }
 
@@ -154,14 +156,16 @@ fn coverage(file: &CalibrationFile) -> Markup {
     for (k, found) in file.coverage.iter().enumerate() {
         let (factor, unit) = unit_of(file, &found.joint);
         let end = |value: Option<f64>, name: &str| match value {
-            Some(value) => html! { (scaled(value, format_args!("coverage.{k}.{name}"), factor)) (unit) },
+            Some(value) => {
+                html! { (scaled_figure(value, format_args!("coverage.{k}.{name}"), factor)) (unit) }
+            }
             None => html! { "none" },
         };
         let kind = file.joints.iter().find(|joint| joint.name == found.joint).map(|joint| joint.kind);
         let share = kind.and_then(|kind| found.share(kind));
         is_of_a_turn |= kind.is_some_and(|kind| found.is_of_a_turn(kind));
         table.row(&[
-            &quoted(&found.joint, format_args!("coverage.{k}.joint")),
+            &quote_text(&found.joint, format_args!("coverage.{k}.joint")),
             &end(Some(found.sampled_min), "sampled_min"),
             &end(Some(found.sampled_max), "sampled_max"),
             &end(found.limit_min, "limit_min"),
@@ -172,13 +176,13 @@ fn coverage(file: &CalibrationFile) -> Markup {
     html! {
         h3 { "Sampled part of each joint's range" }
         (plots(&figures::coverage(file), "Bars: sampled by the fitted rows. Thin lines: the limits of the model."))
-        (folded("The ranges as numbers", &table))
+        (fold_table("The ranges as numbers", &table))
         @if is_of_a_turn { p { "Share: of one turn where the limits span more." } }
     }
 }
 
 /// Number of determined unknowns, and the undetermined or weakly determined ones.
-fn determined(file: &CalibrationFile) -> Markup {
+fn determined_markup(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability;
     let groups = [
         ("Undetermined by these configurations", "unidentifiable", &found.unidentifiable),
@@ -189,7 +193,7 @@ fn determined(file: &CalibrationFile) -> Markup {
         p {
             (count(found.rank, "identifiability.rank")) " of " (count(found.parameters, "identifiability.parameters"))
             " unknowns are determined"
-            @if found.weakly() > 0 { ", " (found.weakly()) " of them weakly" }
+            @if found.weakly_determined() > 0 { ", " (found.weakly_determined()) " of them weakly" }
             "."
         }
         @for (title, key, directions) in groups {
@@ -207,7 +211,7 @@ pub(crate) fn for_the_metrologist(file: &CalibrationFile) -> Markup {
             (list(&items(&found.structural, "structural")))
         }
         (observability(file))
-        (common(file))
+        (common_directions(file))
         (correlations(file))
         (shares(file))
     }
@@ -219,9 +223,9 @@ fn items(directions: &[Direction], key: &str) -> Vec<Markup> {
 }
 
 /// Combinations of several joints that are determined only together.
-fn common(file: &CalibrationFile) -> Markup {
+fn common_directions(file: &CalibrationFile) -> Markup {
     let items = file.common.iter().enumerate();
-    let items = items.map(|(k, it)| quoted(&it.words, format_args!("common.{k}.words")));
+    let items = items.map(|(k, it)| quote_text(&it.words, format_args!("common.{k}.words")));
     let items: Vec<Markup> = items.collect();
     html! {
         @if !items.is_empty() {
@@ -245,7 +249,7 @@ fn shares(file: &CalibrationFile) -> Markup {
     );
     for (k, found) in file.corrections.iter().enumerate() {
         table.row(&[
-            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &quote_text(&found.joint, format_args!("corrections.{k}.joint")),
             &figure_or(found.tilt_from_data, format_args!("corrections.{k}.tilt_from_data"), "–"),
             &figure_or(found.shift_from_data, format_args!("corrections.{k}.shift_from_data"), "–"),
         ]);
@@ -257,7 +261,7 @@ fn shares(file: &CalibrationFile) -> Markup {
 /// A direction with the keys of its words.
 fn direction_words(direction: &Direction, key: &str) -> Markup {
     html! {
-        (quoted(&direction.description, format_args!("{key}.description")))
+        (quote_text(&direction.description, format_args!("{key}.description")))
         @if direction.directions > 1 { " (" (count(direction.directions, format_args!("{key}.directions"))) " unknowns)" }
     }
 }
@@ -270,9 +274,9 @@ fn correlations(file: &CalibrationFile) -> Markup {
     let head: Vec<&str> = std::iter::once("").chain(found.blocks.iter().map(String::as_str)).collect();
     let mut map = HtmlTable::new("Largest correlation between the unknowns of two blocks", 1, &head);
     for (i, (block, row)) in found.blocks.iter().zip(&found.largest).enumerate() {
-        map.marked(&html! {
+        map.push_marked(&html! {
             tr {
-                th scope="row" { (quoted(block, format_args!("uncertainty.correlations.blocks.{i}"))) }
+                th scope="row" { (quote_text(block, format_args!("uncertainty.correlations.blocks.{i}"))) }
                 @for (j, value) in row.iter().enumerate() {
                     td.heat style=(shade::style(*value, 1.0)) {
                         (figure(*value, format_args!("uncertainty.correlations.largest.{i}.{j}")))
@@ -286,7 +290,7 @@ fn correlations(file: &CalibrationFile) -> Markup {
         let key = format!("uncertainty.correlations.pairs.{k}");
         let [one, other] = &pair.unknowns;
         html! {
-            (quoted(one, format_args!("{key}.unknowns.0"))) " and " (quoted(other, format_args!("{key}.unknowns.1"))) ": "
+            (quote_text(one, format_args!("{key}.unknowns.0"))) " and " (quote_text(other, format_args!("{key}.unknowns.1"))) ": "
             (figure(pair.correlation, format_args!("{key}.correlation")))
         }
     };

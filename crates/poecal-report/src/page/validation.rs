@@ -2,18 +2,18 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::certificate::{self, limits, stated};
+use super::certificate::{self, limits, record_markup};
 use super::errors::{error_words, models_table};
-use super::html::{HtmlTable, capital, count, facts, figure, list, plots, quoted, section};
-use super::lead::{sign, spaced};
+use super::html::{HtmlTable, capital, count, facts, figure, list, plots, quote_text, section};
+use super::leading_error::{sign, spaced_unit};
 use super::{head, joins, method};
 use crate::judgement::{before_factor, confirmed_words, judged_models, refitted_parts};
-use crate::plot::{Axis, Line, LinePlot, Scale};
+use crate::plot::{AxisScale, LinePlot, PlotAxis, PlotLine};
 use poecal_calibrate::Level;
 use poecal_model::measurement::Quantity;
 use poecal_numerics::text::visible_markup;
-use poecal_results::output::Page;
-use poecal_results::validation::{Earlier, JudgedRows, Validation, VerdictError};
+use poecal_results::output::PagePieces;
+use poecal_results::validation::{HistoryEntry, JudgedRows, Validation, VerdictError};
 
 /// Largest rows that the table lists.
 const LISTED: usize = 10;
@@ -26,8 +26,8 @@ const DRAWN: usize = 200;
 /// use poecal_calibrate::{CalibrationOptions, calibrate};
 /// use poecal_results::calibration_file::{CalibrationFile, Inputs};
 /// use poecal_results::validation::{JudgedRows, Validation, ValidationInputs};
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// use poecal_model::simulate::{SessionKind, Simulation, elbow};
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let judgement = file.judge(&made.data, false, false)?;
@@ -38,24 +38,24 @@ const DRAWN: usize = 200;
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[must_use]
-pub fn validation_page(found: &Validation, rows: &JudgedRows<'_>, earlier: &[Earlier]) -> Page {
+pub fn validation_page(found: &Validation, rows: &JudgedRows<'_>, earlier: &[HistoryEntry]) -> PagePieces {
     let title = format!("Check of the calibration of {}", found.robot);
     let head = head(&title, &found.record, found.poecal_version);
     let body = html! {
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
             header {
-                h1 { "Check of the calibration of " (quoted(&found.robot, "robot")) }
-                p.made { (count(found.judgement.count, "count")) " measurements · made by poecal " (quoted(found.poecal_version, "poecal_version")) }
+                h1 { "Check of the calibration of " (quote_text(&found.robot, "robot")) }
+                p.made { (count(found.judgement.count, "count")) " measurements · made by poecal " (quote_text(found.poecal_version, "poecal_version")) }
             }
-            (stated(&found.record))
+            (record_markup(&found.record))
             @if let Some(acceptance) = &found.judgement.acceptance { (limits(acceptance)) }
             (verdict(found))
             div.first {
                 div { (errors(found)) (facts(&the_facts(found))) }
                 (plots(&[picture(rows)], "Each row's error beside the bound below which it lies with 95 % probability, in the order read."))
             }
-            (largest(rows))
+            (largest_errors(rows))
             (checks(found, earlier))
             (inputs(found))
             (signature(found))
@@ -69,7 +69,7 @@ fn verdict(found: &Validation) -> Markup {
     let words = capital(confirmed_words(found.verdict.level));
     let reasons = found.verdict.reasons.iter().enumerate();
     let reasons: Vec<Markup> =
-        reasons.map(|(k, text)| quoted(text, format_args!("verdict.reasons.{k}"))).collect();
+        reasons.map(|(k, text)| quote_text(text, format_args!("verdict.reasons.{k}"))).collect();
     let mut doubts = Vec::new();
     if let Some(moved) = found.judgement.moved_device.filter(|it| it.refitted) {
         doubts.push(html! {
@@ -79,7 +79,7 @@ fn verdict(found: &Validation) -> Markup {
     }
     let fitted = if found.fitted.is_empty() { None } else { found.warnings().into_iter().next() };
     doubts.extend(fitted.map(|text| html! { (text) }));
-    doubts.extend(found.doubt.as_ref().map(|text| quoted(text, "doubt")));
+    doubts.extend(found.doubt.as_ref().map(|text| quote_text(text, "doubt")));
     html! {
         section class={ "verdict " (class) } aria-labelledby="verdict-title" {
             h2 #verdict-title { span.sign aria-hidden="true" {} (words) }
@@ -95,7 +95,7 @@ fn verdict(found: &Validation) -> Markup {
 /// The error of the delivered model beside the expected one.
 fn one_figure(found: &Validation, quantity: Quantity, error: &VerdictError) -> Markup {
     let key = |name: &str| format!("verdict.{}.{name}", quantity.key());
-    let unit = spaced(quantity.unit());
+    let unit = spaced_unit(quantity.unit());
     html! {
         p {
             "Error of the " (found.verdict.model.word()) " model, " (quantity.name()) ": " (figure(error.rms, key("rms"))) (unit) " (RMS)"
@@ -120,7 +120,7 @@ fn errors(found: &Validation) -> Markup {
 fn the_facts(found: &Validation) -> Vec<(&'static str, Markup)> {
     let parts = refitted_parts(&found.judgement);
     let refitted = if parts.is_empty() { "nothing".to_owned() } else { parts + ", to these measurements" };
-    let delivered = found.judgement.delivered();
+    let delivered = found.judgement.delivered_model();
     let inside = match delivered.in_sampled_range {
         None => html! { "no row lies inside it" },
         Some(some) => html! { (some.count) " of " (found.judgement.count) " rows lie inside it" },
@@ -137,25 +137,25 @@ fn the_facts(found: &Validation) -> Vec<(&'static str, Markup)> {
 }
 
 /// Quantity of the picture and the list: the first that was measured.
-fn leading(rows: &JudgedRows<'_>) -> Option<Quantity> {
-    rows.measured().into_iter().next()
+fn leading_quantity(rows: &JudgedRows<'_>) -> Option<Quantity> {
+    rows.measured_quantities().into_iter().next()
 }
 
 /// Error and bound of a row, as people read them.
 fn row_of(rows: &JudgedRows<'_>, k: usize, quantity: Quantity) -> Option<(f64, Option<f64>)> {
     let found = rows.rows.get(k)?.errors.get(quantity)?;
-    let shown = |value: f64| quantity.unit().shown(value);
+    let shown = |value: f64| quantity.unit().in_shown_unit(value);
     Some((shown(found.length), found.promised.map(|it| shown(it.bound))))
 }
 
 fn picture(rows: &JudgedRows<'_>) -> Markup {
-    let Some(quantity) = leading(rows) else { return Markup::default() };
+    let Some(quantity) = leading_quantity(rows) else { return Markup::default() };
     let step = rows.rows.len().div_ceil(DRAWN).max(1);
     let all = (0..rows.rows.len()).step_by(step);
     let own: Vec<(f64, (f64, Option<f64>))> =
         all.filter_map(|k| Some((k as f64 + 1.0, row_of(rows, k, quantity)?))).collect();
     let line =
-        |name: &str, style: usize, points: Vec<[f64; 2]>| Line { name: name.to_owned(), style, points };
+        |name: &str, style: usize, points: Vec<[f64; 2]>| PlotLine { name: name.to_owned(), style, points };
     let errors = own.iter().map(|(k, (error, _))| [*k, *error]).collect();
     let bounds = own.iter().filter_map(|(k, (_, bound))| Some([*k, (*bound)?])).collect();
     let lines = [line("error", 0, errors), line("95 % bound", 2, bounds)];
@@ -163,8 +163,9 @@ fn picture(rows: &JudgedRows<'_>) -> Markup {
     let plot = LinePlot {
         title: format!("The {} error by row", quantity.name()),
         description: "The error of each row and its bound; the table of errors has the figures.".to_owned(),
-        x: Axis::new("row", Scale::Count),
-        y: Axis::new(&format!("{} error, {unit}", quantity.name()), Scale::Linear).including(&[0.0]),
+        x: PlotAxis::new("row", AxisScale::Count),
+        y: PlotAxis::new(&format!("{} error, {unit}", quantity.name()), AxisScale::Linear)
+            .with_values(&[0.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,
     };
@@ -172,8 +173,8 @@ fn picture(rows: &JudgedRows<'_>) -> Markup {
 }
 
 /// The rows of the largest errors.
-fn largest(rows: &JudgedRows<'_>) -> Markup {
-    let Some(quantity) = leading(rows) else { return Markup::default() };
+fn largest_errors(rows: &JudgedRows<'_>) -> Markup {
+    let Some(quantity) = leading_quantity(rows) else { return Markup::default() };
     let mut all: Vec<(usize, f64, Option<f64>)> = (0..rows.rows.len())
         .filter_map(|k| row_of(rows, k, quantity).map(|(error, bound)| (k, error, bound)))
         .collect();
@@ -203,8 +204,8 @@ fn largest(rows: &JudgedRows<'_>) -> Markup {
 }
 
 /// The checks before this one, and this one.
-fn checks(found: &Validation, earlier: &[Earlier]) -> Markup {
-    let Some((quantity, own)) = found.verdict.errors.leading() else { return Markup::default() };
+fn checks(found: &Validation, earlier: &[HistoryEntry]) -> Markup {
+    let Some((quantity, own)) = found.verdict.errors.leading_value() else { return Markup::default() };
     if earlier.is_empty() {
         return Markup::default();
     }
@@ -248,7 +249,7 @@ fn inputs(found: &Validation) -> Markup {
         @if let Some(command) = &inputs.command {
             details {
                 summary { "How to make it again" }
-                pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
+                pre tabindex="0" { code { (quote_text(command, "inputs.command")) } }
             }
         }
     };

@@ -1,14 +1,14 @@
 //! A robot in many configurations, seen from a side.
 
-use super::axis::{Axis, Scale};
-use super::frame::{self, Area, Frame, WIDTH};
+use super::axis::{AxisScale, PlotAxis};
+use super::frame::{self, Area, PlotFrame, WIDTH};
 use super::svg::Canvas;
 
 /// Largest height of the area of the data, px.
 const HIGHEST: f64 = 420.0;
 
 /// Lines and points of one series of an [`ArmPlot`].
-pub struct Arms {
+pub struct ArmSeries {
     pub name: String,
     pub style: usize,
     pub lines: Vec<[[f64; 2]; 2]>,
@@ -24,7 +24,7 @@ pub struct ArmPlot {
     pub description: String,
     pub x_title: String,
     pub y_title: String,
-    pub arms: Vec<Arms>,
+    pub arms: Vec<ArmSeries>,
 }
 
 impl ArmPlot {
@@ -55,15 +55,16 @@ impl ArmPlot {
             let (middle, half) = (0.5 * (low + high), 0.5 * per_px * px);
             [middle - half, middle + half]
         };
-        let x = Axis::new(&self.x_title, Scale::Linear).including(&widened(ranges[0], right - left));
-        let y = Axis::new(&self.y_title, Scale::Linear).including(&widened(ranges[1], height));
+        let x =
+            PlotAxis::new(&self.x_title, AxisScale::Linear).with_values(&widened(ranges[0], right - left));
+        let y = PlotAxis::new(&self.y_title, AxisScale::Linear).with_values(&widened(ranges[1], height));
         let (x, y) = (x.ruler(std::iter::empty()), y.ruler(std::iter::empty()));
         let area = Area { left, top, right, bottom: top + height };
         frame::vertical_axis(&mut canvas, &area, &y);
-        let mut frame = Frame::new(canvas, area, (x, &self.x_title), None);
+        let mut frame = PlotFrame::new(canvas, area, (x, &self.x_title), None);
         let any = all().next().is_some();
         for arm in &self.arms {
-            let Frame { canvas, area, x, .. } = &mut frame;
+            let PlotFrame { canvas, area, x, .. } = &mut frame;
             let place = |[a, b]: [f64; 2]| Some([area.x(x.place(a)?.share), area.y(y.place(b)?.share)]);
             canvas.begin_series(arm.style);
             for [from, to] in &arm.lines {

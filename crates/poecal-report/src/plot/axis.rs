@@ -2,7 +2,7 @@
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
+pub enum AxisScale {
     Linear,
     /// The same from the least value to the largest, and not from tick to tick.
     Close,
@@ -13,46 +13,46 @@ pub enum Scale {
 }
 
 /// An axis before it sees its data.
-pub struct Axis {
+pub struct PlotAxis {
     /// Quantity and unit.
     pub title: String,
-    pub scale: Scale,
+    pub scale: AxisScale,
     /// Values that are shown whatever the data are.
     pub includes: Vec<f64>,
     /// Steps between ticks that a linear axis aims at.
     pub steps: f64,
 }
 
-impl Axis {
-    pub fn new(title: &str, scale: Scale) -> Self {
-        Axis { title: title.to_owned(), scale, includes: Vec::new(), steps: TICKS }
+impl PlotAxis {
+    pub fn new(title: &str, scale: AxisScale) -> Self {
+        PlotAxis { title: title.to_owned(), scale, includes: Vec::new(), steps: TICKS }
     }
 
-    pub fn including(mut self, values: &[f64]) -> Self {
+    pub fn with_values(mut self, values: &[f64]) -> Self {
         self.includes.extend_from_slice(values);
         self
     }
 
     /// The same with so many steps between its ticks, or somewhat fewer.
     pub fn in_steps(self, steps: f64) -> Self {
-        Axis { steps, ..self }
+        PlotAxis { steps, ..self }
     }
 
     /// The range and ticks for these values.
     pub(crate) fn ruler(&self, values: impl Iterator<Item = f64>) -> Ruler {
         let values: Vec<f64> = values.chain(self.includes.iter().copied()).collect();
         match self.scale {
-            Scale::Linear => Ruler::linear(&values, self.steps, true),
-            Scale::Close => Ruler::linear(&values, self.steps, false),
-            Scale::Log => Ruler::log(&values),
-            Scale::Count => Ruler::count(&values),
+            AxisScale::Linear => Ruler::linear(&values, self.steps, true),
+            AxisScale::Close => Ruler::linear(&values, self.steps, false),
+            AxisScale::Log => Ruler::log(&values),
+            AxisScale::Count => Ruler::count(&values),
         }
     }
 }
 
 /// Where a value lies on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct AxisPosition {
     /// From 0 (low end) to 1 (high end).
     pub(crate) share: f64,
     /// Whether the value itself lies on the axis; else it is drawn at the nearer end.
@@ -83,14 +83,14 @@ const TICKS: f64 = 5.0;
 
 impl Ruler {
     /// Where a value lies; none if it is not a number.
-    pub(crate) fn place(&self, value: f64) -> Option<Place> {
+    pub(crate) fn place(&self, value: f64) -> Option<AxisPosition> {
         if value.is_nan() {
             return None;
         }
         // The logarithm of zero is minus infinity, and that of a negative value is shown there too.
         let along = if self.log { value.max(0.0).log10() } else { value };
         let inside = along.is_finite() && along >= self.low && along <= self.high;
-        Some(Place { share: self.share(along.clamp(self.low, self.high)), inside })
+        Some(AxisPosition { share: self.share(along.clamp(self.low, self.high)), inside })
     }
 
     /// Its ends; of a logarithmic axis powers of ten.
@@ -137,25 +137,25 @@ impl Ruler {
         // Values that differ from a tick by rounding lie on it.
         let [first, last] = [(low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step];
         if to_ticks {
-            return Ruler::stepped(first, last, step).padded();
+            return Ruler::from_step(first, last, step).pad_ends();
         }
-        let mut ruler = Ruler::stepped(first, last, step);
+        let mut ruler = Ruler::from_step(first, last, step);
         let along = |share: f64| first + share * (last - first);
         let span = high - low;
         ruler.ticks.iter_mut().for_each(|it| it.0 = (along(it.0) - low) / span);
         ruler.ticks.retain(|it| (-1e-9..=1.0 + 1e-9).contains(&it.0));
         (ruler.low, ruler.high) = (low, high);
-        ruler.padded()
+        ruler.pad_ends()
     }
 
     fn count(values: &[f64]) -> Self {
         let (_, high) = range(values).unwrap_or((0.0, 1.0));
         let high = high.max(1.0).ceil();
-        Ruler::stepped(0.0, high, step(high, TICKS).max(1.0))
+        Ruler::from_step(0.0, high, step(high, TICKS).max(1.0))
     }
 
     /// The same with room at both ends, so that a marker at an end lies whole on the plot.
-    fn padded(mut self) -> Self {
+    fn pad_ends(mut self) -> Self {
         for (share, _) in &mut self.ticks {
             *share = (*share + PADDING) / (1.0 + 2.0 * PADDING);
         }
@@ -165,7 +165,7 @@ impl Ruler {
     }
 
     /// Ticks from `low` on, `step` apart, as far as `high`.
-    fn stepped(low: f64, high: f64, step: f64) -> Self {
+    fn from_step(low: f64, high: f64, step: f64) -> Self {
         let mut ruler = Ruler { log: false, low, high, ticks: Vec::new() };
         let count = ((high - low) / step + 1e-6).floor().clamp(0.0, 4.0 * TICKS) as usize;
         ruler.ticks = (0..=count)
@@ -234,33 +234,33 @@ fn power_label(factor: f64, power: i32, plain: bool) -> String {
 mod tests {
     use super::*;
 
-    fn ruler(scale: Scale, values: &[f64]) -> Ruler {
-        Axis::new("length, mm", scale).ruler(values.iter().copied())
+    fn ruler(scale: AxisScale, values: &[f64]) -> Ruler {
+        PlotAxis::new("length, mm", scale).ruler(values.iter().copied())
     }
 
-    fn labels(scale: Scale, values: &[f64]) -> Vec<String> {
+    fn labels(scale: AxisScale, values: &[f64]) -> Vec<String> {
         ruler(scale, values).ticks.into_iter().map(|(_, label)| label).collect()
     }
 
     #[test]
     fn ticks_are_round_numbers() {
-        assert_eq!(labels(Scale::Linear, &[-1.2, 3.9]), ["−2", "0", "2", "4"]);
-        assert_eq!(labels(Scale::Linear, &[0.0, 1.0]), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(labels(Scale::Close, &[-1.2, 3.9]), ["0", "2"]);
-        assert_eq!(labels(Scale::Close, &[0.0, 1.0]), labels(Scale::Linear, &[0.0, 1.0]));
-        assert_eq!(labels(Scale::Count, &[0.0, 7.0]), ["0", "2", "4", "6"]);
-        assert_eq!(labels(Scale::Log, &[0.02, 30.0]), ["0.01", "0.1", "1", "10", "100"]);
-        assert_eq!(labels(Scale::Log, &[0.03, 0.04]), ["0.01", "0.02", "0.05", "0.1"]);
-        assert_eq!(labels(Scale::Log, &[1e-12, 1.0]), ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
+        assert_eq!(labels(AxisScale::Linear, &[-1.2, 3.9]), ["−2", "0", "2", "4"]);
+        assert_eq!(labels(AxisScale::Linear, &[0.0, 1.0]), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(AxisScale::Close, &[-1.2, 3.9]), ["0", "2"]);
+        assert_eq!(labels(AxisScale::Close, &[0.0, 1.0]), labels(AxisScale::Linear, &[0.0, 1.0]));
+        assert_eq!(labels(AxisScale::Count, &[0.0, 7.0]), ["0", "2", "4", "6"]);
+        assert_eq!(labels(AxisScale::Log, &[0.02, 30.0]), ["0.01", "0.1", "1", "10", "100"]);
+        assert_eq!(labels(AxisScale::Log, &[0.03, 0.04]), ["0.01", "0.02", "0.05", "0.1"]);
+        assert_eq!(labels(AxisScale::Log, &[1e-12, 1.0]), ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
     }
 
     #[test]
     fn values_at_the_ends_of_a_linear_axis_lie_inside() {
-        let ruler = ruler(Scale::Linear, &[-4.0, 6.0]);
+        let ruler = ruler(AxisScale::Linear, &[-4.0, 6.0]);
         let (low, high) = (ruler.place(-4.0).unwrap(), ruler.place(6.0).unwrap());
         assert!(low.inside && low.share > 0.02 && high.inside && high.share < 0.98, "{low:?} {high:?}");
-        assert_eq!(labels(Scale::Linear, &[-4.0, 6.0]), ["−4", "−2", "0", "2", "4", "6"]);
-        assert_eq!(labels(Scale::Linear, &[0.9, 1.0]).last().unwrap(), "1.00");
+        assert_eq!(labels(AxisScale::Linear, &[-4.0, 6.0]), ["−4", "−2", "0", "2", "4", "6"]);
+        assert_eq!(labels(AxisScale::Linear, &[0.9, 1.0]).last().unwrap(), "1.00");
         for (share, label) in &ruler.ticks {
             let value: f64 = label.replace('−', "-").parse().unwrap();
             assert!((ruler.place(value).unwrap().share - share).abs() < 1e-12);
@@ -269,9 +269,9 @@ mod tests {
 
     #[test]
     fn what_a_log_axis_cannot_show_lies_at_an_end_of_its_own() {
-        let ruler = ruler(Scale::Log, &[0.0, 1.0, 10.0, f64::INFINITY]);
-        assert_eq!(ruler.place(0.0), Some(Place { share: 0.0, inside: false }));
-        assert_eq!(ruler.place(f64::INFINITY), Some(Place { share: 1.0, inside: false }));
+        let ruler = ruler(AxisScale::Log, &[0.0, 1.0, 10.0, f64::INFINITY]);
+        assert_eq!(ruler.place(0.0), Some(AxisPosition { share: 0.0, inside: false }));
+        assert_eq!(ruler.place(f64::INFINITY), Some(AxisPosition { share: 1.0, inside: false }));
         assert_eq!(ruler.place(f64::NAN), None);
         let one = ruler.place(1.0).unwrap();
         assert!(one.inside && one.share > 0.3 && one.share < 0.4, "{one:?}");
@@ -282,7 +282,7 @@ mod tests {
         let odd = [0.0, -0.0, 1.0, -1.0, 5e-324, -1e-300, 1e-18, 1e300, f64::MAX, f64::MIN, f64::INFINITY];
         let odd = odd.into_iter().chain([f64::NEG_INFINITY, f64::NAN, 1.0 + f64::EPSILON, 1e17]);
         let odd: Vec<f64> = odd.collect();
-        for scale in [Scale::Linear, Scale::Close, Scale::Log, Scale::Count] {
+        for scale in [AxisScale::Linear, AxisScale::Close, AxisScale::Log, AxisScale::Count] {
             let sets = odd.iter().flat_map(|a| odd.iter().map(move |b| vec![*a, *b]));
             for values in sets.chain([vec![], odd.clone()]) {
                 let ruler = ruler(scale, &values);

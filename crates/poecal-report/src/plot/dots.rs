@@ -1,8 +1,8 @@
 //! Dots by category: a row for each, several series in a row, joined where a pair is compared.
 
-use super::Mark;
-use super::axis::Axis;
-use super::frame::{Area, Frame};
+use super::AxisMark;
+use super::axis::PlotAxis;
+use super::frame::{Area, PlotFrame};
 
 /// Height of a row, px, and what each further series adds where they stand below each other.
 const ROW: f64 = 17.0;
@@ -22,12 +22,12 @@ pub struct Dots {
 pub struct DotPlot {
     pub title: String,
     pub description: String,
-    pub x: Axis,
+    pub x: PlotAxis,
     pub rows: Vec<String>,
     pub series: Vec<Dots>,
     /// Whether a row's dots lie on one line that joins them.
     pub joined: bool,
-    pub mark: Option<Mark>,
+    pub mark: Option<AxisMark>,
 }
 
 impl DotPlot {
@@ -40,7 +40,7 @@ impl DotPlot {
             self.series.iter().map(|dots| (dots.style, dots.name.as_str())).collect();
         let labels: Vec<&str> = self.rows.iter().map(String::as_str).collect();
         let (rows, x) = ((labels.as_slice(), self.row_height()), (x, self.x.title.as_str()));
-        let mut frame = Frame::of_rows(&self.title, &legend, rows, x, self.mark.as_ref());
+        let mut frame = PlotFrame::of_rows(&self.title, &legend, rows, x, self.mark.as_ref());
         for (k, row) in labels.iter().enumerate() {
             frame.row_label(self.row_middle(&frame.area, k), row);
             self.join(&mut frame, k);
@@ -61,21 +61,21 @@ impl DotPlot {
     }
 
     /// The line from a row's least to its largest value.
-    fn join(&self, frame: &mut Frame, row: usize) {
+    fn join(&self, frame: &mut PlotFrame, row: usize) {
         let y = self.row_middle(&frame.area, row);
         if !self.joined {
             return frame.canvas.grid_line([frame.area.left, y], [frame.area.right, y]);
         }
         let values = self.series.iter().filter_map(|dots| *dots.values.get(row)?);
-        let places = values.filter_map(|value| frame.across(value));
+        let places = values.filter_map(|value| frame.position_across(value));
         let (from, to) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         if from < to {
             frame.canvas.axis_line([from, y], [to, y]);
         }
     }
 
-    fn draw(&self, frame: &mut Frame, series: usize, dots: &Dots) {
-        let Frame { canvas, area, x, unshown } = frame;
+    fn draw(&self, frame: &mut PlotFrame, series: usize, dots: &Dots) {
+        let PlotFrame { canvas, area, x, unshown } = frame;
         let middle = (self.series.len() as f64 - 1.0) / 2.0;
         let shift = if self.joined { 0.0 } else { SERIES * (series as f64 - middle) };
         canvas.begin_series(dots.style);
@@ -86,7 +86,7 @@ impl DotPlot {
                 continue;
             };
             if !place.inside {
-                unshown.beyond(value);
+                unshown.count_beyond(value);
             }
             let at = [area.x(place.share), self.row_middle(area, row) + shift];
             canvas.marker(dots.style, at, RADIUS, place.inside);
@@ -98,14 +98,14 @@ impl DotPlot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Scale;
+    use crate::plot::AxisScale;
 
-    fn plot(scale: Scale, joined: bool, values: &[Option<f64>]) -> String {
+    fn plot(scale: AxisScale, joined: bool, values: &[Option<f64>]) -> String {
         let dots = |style| Dots { name: "a < b".to_owned(), style, values: values.to_vec() };
         let plot = DotPlot {
             title: "Dots".to_owned(),
             description: String::new(),
-            x: Axis::new("angle, deg", scale),
+            x: PlotAxis::new("angle, deg", scale),
             rows: values.iter().map(|_| "row & label".to_owned()).collect(),
             series: vec![dots(0), dots(7)],
             joined,
@@ -123,7 +123,9 @@ mod tests {
             odd.iter().copied().map(Some).collect(),
         ]);
         for values in sets {
-            for (scale, joined) in [(Scale::Linear, false), (Scale::Log, true), (Scale::Log, false)] {
+            for (scale, joined) in
+                [(AxisScale::Linear, false), (AxisScale::Log, true), (AxisScale::Log, false)]
+            {
                 let svg = plot(scale, joined, &values);
                 roxmltree::Document::parse(&svg).unwrap();
                 assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");
@@ -133,6 +135,6 @@ mod tests {
 
     #[test]
     fn nothing_to_show_is_said() {
-        assert!(plot(Scale::Log, true, &[None]).contains("There are no values."));
+        assert!(plot(AxisScale::Log, true, &[None]).contains("There are no values."));
     }
 }

@@ -1,8 +1,8 @@
 //! What plots share: title, legend, axes and notes around an area for the data.
 
-use super::Mark;
+use super::AxisMark;
 use super::axis::Ruler;
-use super::svg::{Anchor, Canvas, text_width, wrapped};
+use super::svg::{Anchor, Canvas, text_width, wrap_text};
 
 /// Width of every plot, px.
 pub(crate) const WIDTH: f64 = 440.0;
@@ -36,16 +36,16 @@ impl Area {
 
 /// Values that an axis could not show.
 #[derive(Default)]
-pub(crate) struct Unshown {
+pub(crate) struct HiddenValues {
     zero: usize,
     infinite: usize,
     other: usize,
     pub(crate) not_numbers: usize,
 }
 
-impl Unshown {
+impl HiddenValues {
     /// Counts a value that is drawn at an end of its axis.
-    pub(crate) fn beyond(&mut self, value: f64) {
+    pub(crate) fn count_beyond(&mut self, value: f64) {
         let count = match value {
             0.0 => &mut self.zero,
             value if value.is_infinite() => &mut self.infinite,
@@ -56,18 +56,23 @@ impl Unshown {
 }
 
 /// A plot in the making: an area for the data, below the title and the legend, and the horizontal axis below it.
-pub(crate) struct Frame {
+pub(crate) struct PlotFrame {
     pub(crate) canvas: Canvas,
     pub(crate) area: Area,
     /// The horizontal axis.
     pub(crate) x: Ruler,
-    pub(crate) unshown: Unshown,
+    pub(crate) unshown: HiddenValues,
 }
 
-impl Frame {
+impl PlotFrame {
     /// A frame around an area, with its horizontal axis, and its mark, for which there is [`mark_room`].
-    pub(crate) fn new(canvas: Canvas, area: Area, (x, title): (Ruler, &str), mark: Option<&Mark>) -> Self {
-        let mut frame = Frame { canvas, area, x, unshown: Unshown::default() };
+    pub(crate) fn new(
+        canvas: Canvas,
+        area: Area,
+        (x, title): (Ruler, &str),
+        mark: Option<&AxisMark>,
+    ) -> Self {
+        let mut frame = PlotFrame { canvas, area, x, unshown: HiddenValues::default() };
         frame.horizontal_axis(title, mark);
         frame
     }
@@ -78,7 +83,7 @@ impl Frame {
         legend: &[(usize, &str)],
         (labels, height): (&[&str], f64),
         x: (Ruler, &str),
-        mark: Option<&Mark>,
+        mark: Option<&AxisMark>,
     ) -> Self {
         let mut canvas = Canvas::new();
         let top = head(&mut canvas, title, legend, false) + mark_room(mark);
@@ -86,11 +91,11 @@ impl Frame {
         let bottom = top + height * labels.len().max(1) as f64;
         // Long labels take from the data, but not more than half.
         let left = (widest + 18.0).clamp(40.0, WIDTH / 2.0);
-        Frame::new(canvas, Area { left, top, right: WIDTH - 24.0, bottom }, x, mark)
+        PlotFrame::new(canvas, Area { left, top, right: WIDTH - 24.0, bottom }, x, mark)
     }
 
     /// Where a value is drawn along the horizontal axis, px; nowhere if it is not a number.
-    pub(crate) fn across(&self, value: f64) -> Option<f64> {
+    pub(crate) fn position_across(&self, value: f64) -> Option<f64> {
         self.x.place(value).map(|place| self.area.x(place.share))
     }
 
@@ -106,8 +111,8 @@ impl Frame {
     }
 
     /// Grid, ticks and title of the horizontal axis, and its mark.
-    fn horizontal_axis(&mut self, title: &str, mark: Option<&Mark>) {
-        let Frame { canvas, area, x: ruler, .. } = self;
+    fn horizontal_axis(&mut self, title: &str, mark: Option<&AxisMark>) {
+        let PlotFrame { canvas, area, x: ruler, .. } = self;
         for (share, label) in &ruler.ticks {
             let x = area.x(*share);
             canvas.grid_line([x, area.top], [x, area.bottom]);
@@ -156,7 +161,7 @@ impl Frame {
 /// Title and legend; gives the y below them.
 pub(crate) fn head(canvas: &mut Canvas, title: &str, legend: &[(usize, &str)], dashes: bool) -> f64 {
     let mut y = MARGIN + 8.0;
-    for line in wrapped(title, WIDTH - 2.0 * MARGIN) {
+    for line in wrap_text(title, WIDTH - 2.0 * MARGIN) {
         canvas.bold_text([MARGIN, y], &line);
         y += LINE;
     }
@@ -197,6 +202,6 @@ pub(crate) fn vertical_axis(canvas: &mut Canvas, area: &Area, ruler: &Ruler) {
 }
 
 /// Room for a mark's label above the data.
-pub(crate) fn mark_room(mark: Option<&Mark>) -> f64 {
+pub(crate) fn mark_room(mark: Option<&AxisMark>) -> f64 {
     if mark.is_some() { LINE } else { 0.0 }
 }

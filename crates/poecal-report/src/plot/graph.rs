@@ -8,13 +8,13 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
-use super::axis::{Axis, Ruler};
+use super::axis::{PlotAxis, Ruler};
 
 /// Units of the view to the px of its height.
 const FINE: f64 = 2.0;
 
 /// A series of dots.
-pub struct Spots {
+pub struct DotSeries {
     /// Its classes, the first of which is its colour.
     pub class: &'static str,
     /// Width of a dot, px.
@@ -23,7 +23,7 @@ pub struct Spots {
     pub points: Vec<Option<[f64; 2]>>,
 }
 
-impl Spots {
+impl DotSeries {
     /// True if its dots are squares: beside its colour a series has a shape.
     fn is_square(&self) -> bool {
         self.class == "s1"
@@ -31,53 +31,53 @@ impl Spots {
 }
 
 /// Lines or areas of one class.
-pub struct Shape {
+pub struct PlotShape {
     pub class: &'static str,
     pub pieces: Vec<Vec<[f64; 2]>>,
 }
 
 /// A vertical axis with what belongs to it. Of several the first is shown, until a script shows another.
-pub struct Side {
-    pub y: Axis,
+pub struct VerticalAxis {
+    pub y: PlotAxis,
     /// Words instead of the picture.
     pub spoken: String,
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<PlotShape>,
 }
 
 /// Dots over two axes.
 pub struct Graph {
-    pub x: Axis,
+    pub x: PlotAxis,
     /// Height of the area of the data, px, and a usual width of it.
     pub size: [f64; 2],
     /// Places are along the first of the vertical axes.
-    pub dots: Vec<Spots>,
-    pub sides: Vec<Side>,
+    pub dots: Vec<DotSeries>,
+    pub sides: Vec<VerticalAxis>,
 }
 
 /// A rectangle of whole numbers for the data.
-struct View {
+struct PlotArea {
     width: f64,
     height: f64,
     x: Ruler,
 }
 
-impl View {
+impl PlotArea {
     /// Place of a point; none if it is beyond the axes.
     fn place(&self, y: &Ruler, point: [f64; 2]) -> Option<[i32; 2]> {
         let [across, up] = [self.x.place(point[0])?, y.place(point[1])?];
-        (across.inside && up.inside).then(|| self.rounded(across.share, up.share))
+        (across.inside && up.inside).then(|| self.round_point(across.share, up.share))
     }
 
     /// The same, with what is beyond the vertical axis at its end.
-    fn clipped(&self, y: &Ruler, point: [f64; 2]) -> Option<[i32; 2]> {
-        Some(self.rounded(self.x.place(point[0])?.share, y.place(point[1])?.share))
+    fn clip_point(&self, y: &Ruler, point: [f64; 2]) -> Option<[i32; 2]> {
+        Some(self.round_point(self.x.place(point[0])?.share, y.place(point[1])?.share))
     }
 
-    fn rounded(&self, across: f64, up: f64) -> [i32; 2] {
+    fn round_point(&self, across: f64, up: f64) -> [i32; 2] {
         [(across * self.width).round() as i32, ((1.0 - up) * self.height).round() as i32]
     }
 
-    fn dots(&self, y: &Ruler, dots: &Spots) -> String {
+    fn dots(&self, y: &Ruler, dots: &DotSeries) -> String {
         let mut path = String::with_capacity(9 * dots.points.len());
         if dots.points.iter().all(Option::is_none) {
             return path;
@@ -101,8 +101,8 @@ impl View {
         let mut path = String::new();
         let mut last = [0, 0];
         for piece in pieces {
-            let places: Vec<[i32; 2]> = piece.iter().filter_map(|point| self.clipped(y, *point)).collect();
-            for (k, at) in straightened(&places).into_iter().enumerate() {
+            let places: Vec<[i32; 2]> = piece.iter().filter_map(|point| self.clip_point(y, *point)).collect();
+            for (k, at) in straighten_line(&places).into_iter().enumerate() {
                 step(&mut path, if k == 0 { 'm' } else { 'l' }, last, at);
                 last = at;
             }
@@ -112,13 +112,13 @@ impl View {
 
     /// Lines of the grid at the ticks of the vertical axis.
     fn level(&self, y: &Ruler) -> String {
-        let at = |share: f64| self.rounded(0.0, share)[1];
+        let at = |share: f64| self.round_point(0.0, share)[1];
         y.ticks.iter().map(|(share, _)| format!("M0 {}H{}", at(*share), self.width)).collect()
     }
 
     /// The same of the horizontal one.
-    fn upright(&self) -> String {
-        let at = |share: f64| self.rounded(share, 0.0)[0];
+    fn vertical_grid(&self) -> String {
+        let at = |share: f64| self.round_point(share, 0.0)[0];
         self.x.ticks.iter().map(|(share, _)| format!("M{} 0V{}", at(*share), self.height)).collect()
     }
 }
@@ -131,7 +131,7 @@ fn step(path: &mut String, command: char, from: [i32; 2], to: [i32; 2]) {
 }
 
 /// A line without the places that lie on the way between others, to a unit.
-fn straightened(places: &[[i32; 2]]) -> Vec<[i32; 2]> {
+fn straighten_line(places: &[[i32; 2]]) -> Vec<[i32; 2]> {
     let mut kept: Vec<[i32; 2]> = Vec::new();
     let mut from = 0;
     for (k, place) in places.iter().enumerate() {
@@ -161,7 +161,8 @@ impl Graph {
     /// The chart as SVG, for a page whose style sheet has its classes.
     pub fn svg(&self) -> Markup {
         let [width, height] = self.size;
-        let view = View { width: FINE * width, height: FINE * height, x: self.x.ruler(std::iter::empty()) };
+        let view =
+            PlotArea { width: FINE * width, height: FINE * height, x: self.x.ruler(std::iter::empty()) };
         let rulers: Vec<Ruler> = self.sides.iter().map(|side| side.y.ruler(std::iter::empty())).collect();
         let spoken = self.sides.first().map_or("", |side| &side.spoken);
         let [low, high] = view.x.ends();
@@ -169,7 +170,7 @@ impl Graph {
         html! {
             svg.graph role="img" aria-label=(spoken) height=(height) {
                 svg viewBox={ "0 0 " (view.width) " " (view.height) } preserveAspectRatio="none" {
-                    path.grid d=(view.upright()) {}
+                    path.grid d=(view.vertical_grid()) {}
                     @for (k, y) in rulers.iter().enumerate() { path.grid data-side=[mark(k)] hidden[k > 0] d=(view.level(y)) {} }
                     @for dots in self.dots.iter().filter(|it| !it.points.is_empty()) {
                         path.dots.(dots.class) stroke-linecap=(if dots.is_square() { "square" } else { "round" }) stroke-width=(dots.size) d=(rulers.first().map(|y| view.dots(y, dots)).unwrap_or_default()) {}
@@ -197,7 +198,7 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Scale;
+    use crate::plot::AxisScale;
 
     /// Dots as the page's script reads them: places in the view, none of rows without one.
     fn dots(svg: &str) -> Vec<Option<[i32; 2]>> {
@@ -218,13 +219,13 @@ mod tests {
     }
 
     fn graph(points: Vec<Option<[f64; 2]>>, line: Vec<[f64; 2]>) -> String {
-        let side = Side {
-            y: Axis::new("error < 1, mm", Scale::Linear).including(&[0.0, 4.0]),
+        let side = VerticalAxis {
+            y: PlotAxis::new("error < 1, mm", AxisScale::Linear).with_values(&[0.0, 4.0]),
             spoken: "a \"chart\"".to_owned(),
-            shapes: vec![Shape { class: "ink", pieces: vec![line] }],
+            shapes: vec![PlotShape { class: "ink", pieces: vec![line] }],
         };
-        let x = Axis::new("row", Scale::Linear).including(&[0.0, 10.0]);
-        let dots = vec![Spots { class: "s0", size: 3, points }];
+        let x = PlotAxis::new("row", AxisScale::Linear).with_values(&[0.0, 10.0]);
+        let dots = vec![DotSeries { class: "s0", size: 3, points }];
         Graph { x, size: [100.0, 50.0], dots, sides: vec![side] }.svg().into_string()
     }
 

@@ -50,7 +50,7 @@ pub struct HeatMap {
 }
 
 /// A value with as many decimals as the largest of the map needs.
-fn shown(value: f64, largest: f64) -> String {
+fn format_value(value: f64, largest: f64) -> String {
     let decimals = if largest < 10.0 { 2 } else { usize::from(largest < 100.0) };
     format!("{value:.decimals$}")
 }
@@ -71,13 +71,13 @@ impl HeatMap {
         let area = Area { left: LEFT, top, right: LEFT + side * columns, bottom: top + side * rows };
         let values = self.cells.iter().map(|cell| cell.value).filter(|value| value.is_finite());
         let largest = values.fold(0.0, f64::max);
-        let longest = self.longest();
+        let longest = self.longest_arrow();
         for cell in &self.cells {
             let [column, row] = [cell.at[0] - ends[0].0, cell.at[1] - ends[1].0].map(|it| it as f64);
             let down = if self.downwards { row } else { rows - 1.0 - row };
             let (left, top) = (area.left + side * column, area.top + side * down);
             canvas.cell([left, top], side, share(cell.value, largest), &cell.told);
-            let text = shown(cell.value, largest);
+            let text = format_value(cell.value, largest);
             let middle = if longest > 0.0 { 0.82 } else { 0.5 };
             if text_width(&text) <= 1.15 * side {
                 canvas.small_text([left + 0.5 * side, top + middle * side + 3.5], Anchor::Middle, &text);
@@ -99,7 +99,7 @@ impl HeatMap {
     }
 
     /// Length of the longest arrow.
-    fn longest(&self) -> f64 {
+    fn longest_arrow(&self) -> f64 {
         let lengths = self.cells.iter().filter_map(|cell| cell.arrow).map(|[x, y]| x.hypot(y));
         lengths.filter(|it| it.is_finite()).fold(0.0, f64::max)
     }
@@ -137,13 +137,13 @@ impl HeatMap {
             canvas.swatch([x, y], [WIDE, BOX], level as f64 / BOXES as f64);
             x += WIDE;
         }
-        let longest = self.longest();
+        let longest = self.longest_arrow();
         let arrows = if longest > 0.0 {
-            format!("; arrows to {} {}", shown(longest, longest), self.arrows)
+            format!("; arrows to {} {}", format_value(longest, longest), self.arrows)
         } else {
             String::new()
         };
-        let words = format!("{} {}{arrows}", shown(largest, largest), self.values);
+        let words = format!("{} {}{arrows}", format_value(largest, largest), self.values);
         canvas.text([x + 6.0, y + 10.0], Anchor::Start, &words);
         y + BOX
     }

@@ -1,8 +1,8 @@
 //! Lines with markers over two numeric axes.
 
-use super::Mark;
-use super::axis::{Axis, Ruler};
-use super::frame::{self, Area, Frame, WIDTH};
+use super::AxisMark;
+use super::axis::{PlotAxis, Ruler};
+use super::frame::{self, Area, PlotFrame, WIDTH};
 use super::svg::Canvas;
 
 /// Height of the area of the data, px.
@@ -11,7 +11,7 @@ const HEIGHT: f64 = 210.0;
 const MANY: usize = 25;
 
 /// A line of a [`LinePlot`].
-pub struct Line {
+pub struct PlotLine {
     pub name: String,
     /// Which colour, dash and marker: the same thing has the same in every plot.
     pub style: usize,
@@ -30,29 +30,29 @@ pub struct Band {
 pub struct LinePlot {
     pub title: String,
     pub description: String,
-    pub x: Axis,
-    pub y: Axis,
-    pub lines: Vec<Line>,
-    pub mark: Option<Mark>,
+    pub x: PlotAxis,
+    pub y: PlotAxis,
+    pub lines: Vec<PlotLine>,
+    pub mark: Option<AxisMark>,
 }
 
 impl LinePlot {
     /// The plot as SVG.
     pub fn svg(&self) -> String {
-        self.drawn(true, None)
+        self.draw(true, None)
     }
 
     /// The same with the points of the first line alone, not joined.
-    pub fn scattered(&self) -> String {
-        self.drawn(false, None)
+    pub fn draw_scattered(&self) -> String {
+        self.draw(false, None)
     }
 
     /// The same with a band behind the lines.
     pub fn banded(&self, band: &Band) -> String {
-        self.drawn(true, Some(band))
+        self.draw(true, Some(band))
     }
 
-    fn drawn(&self, joins_first: bool, band: Option<&Band>) -> String {
+    fn draw(&self, joins_first: bool, band: Option<&Band>) -> String {
         let points = || self.lines.iter().flat_map(|line| &line.points);
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(points().map(|point| point[0]).chain(marked));
@@ -71,7 +71,7 @@ impl LinePlot {
             frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());
         let area = Area { left: 56.0, top, right: WIDTH - 20.0, bottom: top + HEIGHT };
         frame::vertical_axis(&mut canvas, &area, &y);
-        let mut frame = Frame::new(canvas, area, (x, &self.x.title), self.mark.as_ref());
+        let mut frame = PlotFrame::new(canvas, area, (x, &self.x.title), self.mark.as_ref());
         band.into_iter().for_each(|band| shade(&mut frame, &y, band));
         for (k, line) in self.lines.iter().enumerate() {
             // Lines that coincide stay visible: the later ones have smaller markers.
@@ -83,8 +83,8 @@ impl LinePlot {
 }
 
 /// Draws a band; values that are no numbers are left out.
-fn shade(frame: &mut Frame, y: &Ruler, band: &Band) {
-    let Frame { canvas, area, x, .. } = frame;
+fn shade(frame: &mut PlotFrame, y: &Ruler, band: &Band) {
+    let PlotFrame { canvas, area, x, .. } = frame;
     let edge = |k: usize, point: &[f64; 3]| {
         Some([area.x(x.place(point[0])?.share), area.y(y.place(point[k])?.share)])
     };
@@ -97,8 +97,8 @@ fn shade(frame: &mut Frame, y: &Ruler, band: &Band) {
 }
 
 /// Draws a line, with markers of this radius, and joined or not; where a point is not a number, it is broken.
-fn draw(frame: &mut Frame, y: &Ruler, line: &Line, (radius, is_joined): (f64, bool)) {
-    let Frame { canvas, area, x, unshown } = frame;
+fn draw(frame: &mut PlotFrame, y: &Ruler, line: &PlotLine, (radius, is_joined): (f64, bool)) {
+    let PlotFrame { canvas, area, x, unshown } = frame;
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     let mut markers = Vec::new();
     for &[across_value, up_value] in &line.points {
@@ -110,7 +110,7 @@ fn draw(frame: &mut Frame, y: &Ruler, line: &Line, (radius, is_joined): (f64, bo
         let at = [area.x(across.share), area.y(up.share)];
         let inside = across.inside && up.inside;
         if !inside {
-            unshown.beyond(if up.inside { across_value } else { up_value });
+            unshown.count_beyond(if up.inside { across_value } else { up_value });
         }
         markers.push((at, inside));
         if let Some(piece) = pieces.last_mut() {
@@ -130,17 +130,17 @@ fn draw(frame: &mut Frame, y: &Ruler, line: &Line, (radius, is_joined): (f64, bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Scale;
+    use crate::plot::AxisScale;
 
-    fn plot(scale: Scale, lines: Vec<Vec<[f64; 2]>>) -> String {
-        let line = |(style, points)| Line { name: format!("line <{style}>"), style, points };
+    fn plot(scale: AxisScale, lines: Vec<Vec<[f64; 2]>>) -> String {
+        let line = |(style, points)| PlotLine { name: format!("line <{style}>"), style, points };
         let plot = LinePlot {
             title: "A & B".to_owned(),
             description: "lines".to_owned(),
-            x: Axis::new("iteration", Scale::Count),
-            y: Axis::new("error, mm", scale),
+            x: PlotAxis::new("iteration", AxisScale::Count),
+            y: PlotAxis::new("error, mm", scale),
             lines: lines.into_iter().enumerate().map(line).collect(),
-            mark: Some(Mark { at: 2.5, label: "rank 2".to_owned() }),
+            mark: Some(AxisMark { at: 2.5, label: "rank 2".to_owned() }),
         };
         plot.svg()
     }
@@ -154,7 +154,7 @@ mod tests {
             vec![odd.iter().map(|v| [*v, *v]).collect(), vec![[1.0, 1.0]]],
         ]);
         for lines in sets {
-            for scale in [Scale::Linear, Scale::Log, Scale::Count] {
+            for scale in [AxisScale::Linear, AxisScale::Log, AxisScale::Count] {
                 let svg = plot(scale, lines.clone());
                 let document = roxmltree::Document::parse(&svg).unwrap();
                 assert_eq!(document.root_element().attribute("role"), Some("img"));
@@ -165,12 +165,12 @@ mod tests {
 
     #[test]
     fn a_band_lies_behind_the_lines_and_within_the_axis() {
-        let line = Line { name: "line".to_owned(), style: 1, points: vec![[0.0, 0.0], [1.0, 0.1]] };
+        let line = PlotLine { name: "line".to_owned(), style: 1, points: vec![[0.0, 0.0], [1.0, 0.1]] };
         let plot = LinePlot {
             title: "A".to_owned(),
             description: "a line in a band".to_owned(),
-            x: Axis::new("x", Scale::Linear),
-            y: Axis::new("y", Scale::Linear),
+            x: PlotAxis::new("x", AxisScale::Linear),
+            y: PlotAxis::new("y", AxisScale::Linear),
             lines: vec![line],
             mark: None,
         };
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn zero_on_a_log_axis_is_hollow_and_noted() {
-        let svg = plot(Scale::Log, vec![vec![[0.0, 1.0], [1.0, 0.0], [2.0, f64::NAN]]]);
+        let svg = plot(AxisScale::Log, vec![vec![[0.0, 1.0], [1.0, 0.0], [2.0, f64::NAN]]]);
         assert_eq!(svg.matches("class=\"hollow\"").count(), 1);
         assert!(svg.contains("Hollow: exactly zero (1).") && svg.contains("Not drawn: 1"));
     }
@@ -191,6 +191,6 @@ mod tests {
     #[test]
     fn the_same_data_give_the_same_bytes() {
         let lines = vec![vec![[0.0, 1.0], [1.0, 0.3]], vec![[0.0, 2.0]]];
-        assert_eq!(plot(Scale::Log, lines.clone()), plot(Scale::Log, lines));
+        assert_eq!(plot(AxisScale::Log, lines.clone()), plot(AxisScale::Log, lines));
     }
 }

@@ -13,23 +13,23 @@ mod dots;
 mod frame;
 mod graph;
 mod heat;
-mod joined;
+mod join_plot;
 mod line;
 mod ranges;
 mod smooth;
 mod strips;
 mod svg;
 
-pub use arms::{ArmPlot, Arms};
-pub use axis::{Axis, Scale};
+pub use arms::{ArmPlot, ArmSeries};
+pub use axis::{AxisScale, PlotAxis};
 pub use dots::{DotPlot, Dots};
-pub use graph::{Graph, Shape, Side, Spots};
+pub use graph::{DotSeries, Graph, PlotShape, VerticalAxis};
 pub use heat::{HeatCell, HeatMap};
-pub use joined::{Entry, JoinPlot, List};
-pub use line::{Band, Line, LinePlot};
+pub use join_plot::{JoinPlot, JoinedEntry, JoinedList};
+pub use line::{Band, LinePlot, PlotLine};
 pub use ranges::{RangePlot, RangeRow};
-pub use smooth::{Curve, normal_quantile, quantile};
-pub use strips::{CELLS, Strip, StripPlot};
+pub use smooth::{SmoothCurve, normal_quantile, quantile};
+pub use strips::{CELLS, StripPlot, StripRow};
 
 /// A plot and the name of its file, without the extension.
 pub struct NamedPlot {
@@ -39,7 +39,7 @@ pub struct NamedPlot {
 }
 
 /// A place on the horizontal axis that is marked by a line, and what it is.
-pub struct Mark {
+pub struct AxisMark {
     pub at: f64,
     pub label: String,
 }

@@ -1,7 +1,7 @@
 //! Ranges by category: a row for each, with a thin line, a thick bar on it, and a dot.
 
-use super::axis::Axis;
-use super::frame::Frame;
+use super::axis::PlotAxis;
+use super::frame::PlotFrame;
 
 /// Height of a row, px.
 const ROW: f64 = 22.0;
@@ -22,7 +22,7 @@ pub struct RangeRow {
 pub struct RangePlot {
     pub title: String,
     pub description: String,
-    pub x: Axis,
+    pub x: PlotAxis,
     pub rows: Vec<RangeRow>,
 }
 
@@ -32,7 +32,7 @@ impl RangePlot {
         let values = || self.rows.iter().flat_map(RangeRow::values);
         let x = self.x.ruler(values());
         let labels: Vec<&str> = self.rows.iter().map(|row| row.label.as_str()).collect();
-        let mut frame = Frame::of_rows(&self.title, &[], (&labels, ROW), (x, &self.x.title), None);
+        let mut frame = PlotFrame::of_rows(&self.title, &[], (&labels, ROW), (x, &self.x.title), None);
         frame.left_line();
         for (k, row) in self.rows.iter().enumerate() {
             let y = frame.area.top + ROW * (k as f64 + 0.5);
@@ -48,12 +48,12 @@ impl RangeRow {
         self.line.into_iter().chain(self.bar).flatten().chain(self.dot)
     }
 
-    fn draw(&self, frame: &mut Frame, y: f64) {
+    fn draw(&self, frame: &mut PlotFrame, y: f64) {
         let ends = |range: Option<[f64; 2]>| {
-            range.and_then(|[from, to]| Some([frame.across(from)?, frame.across(to)?]))
+            range.and_then(|[from, to]| Some([frame.position_across(from)?, frame.position_across(to)?]))
         };
         let (line, bar) = (ends(self.line), ends(self.bar));
-        let Frame { canvas, area, x, unshown } = frame;
+        let PlotFrame { canvas, area, x, unshown } = frame;
         if let Some([from, to]) = line {
             canvas.axis_line([from, y], [to, y]);
             for end in [from, to] {
@@ -77,7 +77,7 @@ impl RangeRow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Scale;
+    use crate::plot::AxisScale;
 
     #[test]
     fn any_data_give_well_formed_pictures() {
@@ -89,7 +89,7 @@ mod tests {
                 row(None, None, None),
                 RangeRow::default(),
             ];
-            let x = Axis::new("angle, deg", Scale::Linear);
+            let x = PlotAxis::new("angle, deg", AxisScale::Linear);
             let svg = RangePlot { title: "Ranges".to_owned(), description: String::new(), x, rows }.svg();
             roxmltree::Document::parse(&svg).unwrap();
             assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");

@@ -66,7 +66,7 @@ pub fn normal_quantile(p: f64) -> f64 {
 
 /// A smooth curve through points: straight lines fitted locally, the nearer points counting more (cleveland1979). About thirty points make
 /// each value, at most a quarter of the range wide.
-pub struct Curve {
+pub struct SmoothCurve {
     /// Place, value and its standard deviation by the scatter of the points about the curve.
     pub points: Vec<[f64; 3]>,
     /// Least distance of neighbours where the curve is broken.
@@ -75,9 +75,9 @@ pub struct Curve {
     xs: Vec<f64>,
 }
 
-impl Curve {
+impl SmoothCurve {
     /// The curve through points that are sorted by place; none through few, or through points at one place.
-    pub fn through(points: &[[f64; 2]]) -> Option<Self> {
+    pub fn from_points(points: &[[f64; 2]]) -> Option<Self> {
         let (first, last) = (points.first()?[0], points.last()?[0]);
         if points.len() < LEAST || last.is_nan() || last <= first {
             return None;
@@ -88,10 +88,10 @@ impl Curve {
         let found = (0..PLACES).map(place).map(|place| {
             // Wide enough for a share of the range, and for at least eight points.
             let width = (0.5 * share * range).max(1.01 * distance_of_nearest(points, place));
-            let [value, gain] = local(points, place, width);
+            let [value, gain] = fit_locally(points, place, width);
             [place, value, gain]
         });
-        let mut curve = Curve {
+        let mut curve = SmoothCurve {
             points: found.collect(),
             gap: range * GAP[0].max(GAP[1] / points.len() as f64),
             xs: points.iter().map(|it| it[0]).collect(),
@@ -148,7 +148,7 @@ fn distance_of_nearest(points: &[[f64; 2]], place: f64) -> f64 {
 }
 
 /// The value of the line at a place, and its standard deviation over that of a point.
-fn local(points: &[[f64; 2]], place: f64, width: f64) -> [f64; 2] {
+fn fit_locally(points: &[[f64; 2]], place: f64, width: f64) -> [f64; 2] {
     let from = points.partition_point(|it| it[0] <= place - width);
     let to = points.partition_point(|it| it[0] < place + width);
     let near = || {
@@ -191,7 +191,7 @@ mod tests {
         let noise = |k: usize| 0.3 * (43758.5453 * (12.9898 * k as f64).sin()).fract();
         let points: Vec<[f64; 2]> =
             (0..800).map(|k| (k as f64 / 100.0, noise(k))).map(|(x, off)| [x, x.sin() + off]).collect();
-        let curve = Curve::through(&points).unwrap();
+        let curve = SmoothCurve::from_points(&points).unwrap();
         for [x, value, deviation] in &curve.points {
             assert!(
                 (value - x.sin()).abs() < 4.0 * deviation + 0.01 && *deviation > 0.005 && *deviation < 0.2,
@@ -206,7 +206,7 @@ mod tests {
     fn a_curve_is_broken_where_nothing_was_measured() {
         let points: Vec<[f64; 2]> =
             (0..200).map(|k| [if k < 100 { f64::from(k) } else { 150.0 + f64::from(k) }, 1.0]).collect();
-        let curve = Curve::through(&points).unwrap();
+        let curve = SmoothCurve::from_points(&points).unwrap();
         let pieces = curve.pieces();
         assert_eq!(pieces.len(), 2);
         assert!(pieces[0].iter().all(|it| it[0] < 100.0) && pieces[1].iter().all(|it| it[0] > 249.0));
@@ -214,8 +214,8 @@ mod tests {
 
     #[test]
     fn few_points_and_points_at_one_place_have_no_curve() {
-        assert!(Curve::through(&[[0.0, 1.0]; 20]).is_none());
-        assert!(Curve::through(&[[0.0, 1.0], [1.0, 1.0]]).is_none());
-        assert!(Curve::through(&[]).is_none());
+        assert!(SmoothCurve::from_points(&[[0.0, 1.0]; 20]).is_none());
+        assert!(SmoothCurve::from_points(&[[0.0, 1.0], [1.0, 1.0]]).is_none());
+        assert!(SmoothCurve::from_points(&[]).is_none());
     }
 }

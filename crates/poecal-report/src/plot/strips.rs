@@ -9,7 +9,7 @@ pub const CELLS: usize = 20;
 const ROW: f64 = 26.0;
 
 /// A row: its name, the ends of its range, and how many values are in each part.
-pub struct Strip {
+pub struct StripRow {
     pub name: String,
     pub ends: [String; 2],
     pub counts: [usize; CELLS],
@@ -19,7 +19,7 @@ pub struct Strip {
 pub struct StripPlot {
     pub title: String,
     pub description: String,
-    pub strips: Vec<Strip>,
+    pub strips: Vec<StripRow>,
 }
 
 impl StripPlot {
@@ -27,7 +27,7 @@ impl StripPlot {
     pub fn svg(&self) -> String {
         let mut canvas = Canvas::new();
         let top = frame::head(&mut canvas, &self.title, &[], false) + 4.0;
-        let widest = |of: &dyn Fn(&Strip) -> f64| self.strips.iter().map(of).fold(0.0, f64::max);
+        let widest = |of: &dyn Fn(&StripRow) -> f64| self.strips.iter().map(of).fold(0.0, f64::max);
         let name = widest(&|it| text_width(&it.name)).min(WIDTH / 3.0);
         let [low, high] = [0, 1].map(|end| widest(&|it| text_width(&it.ends[end])));
         let left = 10.0 + name + 12.0 + low + 6.0;

@@ -10,11 +10,11 @@ use poecal_numerics::text::visible_markup;
 struct Style {
     colour: &'static str,
     dash: &'static str,
-    marker: Marker,
+    marker: MarkerSymbol,
 }
 
 #[derive(Clone, Copy)]
-enum Marker {
+enum MarkerSymbol {
     Circle,
     Square,
     Triangle,
@@ -22,10 +22,10 @@ enum Marker {
 }
 
 const STYLES: [Style; 4] = [
-    Style { colour: "#0072b2", dash: "none", marker: Marker::Circle },
-    Style { colour: "#d55e00", dash: "7 3", marker: Marker::Square },
-    Style { colour: "#00805e", dash: "2 3", marker: Marker::Triangle },
-    Style { colour: "#a8487f", dash: "9 3 2 3", marker: Marker::Diamond },
+    Style { colour: "#0072b2", dash: "none", marker: MarkerSymbol::Circle },
+    Style { colour: "#d55e00", dash: "7 3", marker: MarkerSymbol::Square },
+    Style { colour: "#00805e", dash: "2 3", marker: MarkerSymbol::Triangle },
+    Style { colour: "#a8487f", dash: "9 3 2 3", marker: MarkerSymbol::Diamond },
 ];
 
 /// Where text stands relative to its point.
@@ -42,7 +42,7 @@ pub(crate) fn text_width(text: &str) -> f64 {
 }
 
 /// Text broken between words into lines of at most `width` px.
-pub(crate) fn wrapped(text: &str, width: f64) -> Vec<String> {
+pub(crate) fn wrap_text(text: &str, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -57,7 +57,7 @@ pub(crate) fn wrapped(text: &str, width: f64) -> Vec<String> {
 }
 
 /// Points of a line.
-fn joined(points: &[[f64; 2]]) -> String {
+fn join_points(points: &[[f64; 2]]) -> String {
     let points: Vec<String> = points.iter().map(|&[x, y]| format!("{x:.2},{y:.2}")).collect();
     points.join(" ")
 }
@@ -145,7 +145,7 @@ impl Canvas {
     /// A line through points, in the series' dash.
     pub(crate) fn path(&mut self, style: usize, points: &[[f64; 2]]) {
         let dash = STYLES[style % STYLES.len()].dash;
-        let points = joined(points);
+        let points = join_points(points);
         self.put(format_args!(
             r#"<polyline points="{points}" fill="none" stroke-width="1.6" stroke-dasharray="{dash}"/>"#
         ));
@@ -160,7 +160,7 @@ impl Canvas {
 
     /// The area between two lines, which others show through: along the lower one, and back along the upper one.
     pub(crate) fn band(&mut self, around: &[[f64; 2]]) {
-        let points = joined(around);
+        let points = join_points(around);
         self.put(format_args!(r#"<polygon points="{points}" stroke="none" fill-opacity="0.2"/>"#));
     }
 
@@ -174,7 +174,7 @@ impl Canvas {
 
     /// A square of a map, in its share of the full colour, and what is said of it.
     pub(crate) fn cell(&mut self, at: [f64; 2], side: f64, share: f64, told: &str) {
-        self.shaded(
+        self.draw_shaded(
             at,
             [side; 2],
             share,
@@ -184,10 +184,10 @@ impl Canvas {
 
     /// A piece of the scale of a map.
     pub(crate) fn swatch(&mut self, at: [f64; 2], size: [f64; 2], share: f64) {
-        self.shaded(at, size, share, format_args!("/>"));
+        self.draw_shaded(at, size, share, format_args!("/>"));
     }
 
-    fn shaded(
+    fn draw_shaded(
         &mut self,
         [left, top]: [f64; 2],
         [width, height]: [f64; 2],
@@ -211,16 +211,16 @@ impl Canvas {
     pub(crate) fn marker(&mut self, style: usize, [x, y]: [f64; 2], radius: f64, filled: bool) {
         let hollow = if filled { "" } else { r##" class="hollow" fill="#ffffff""## };
         match STYLES[style % STYLES.len()].marker {
-            Marker::Circle => {
+            MarkerSymbol::Circle => {
                 self.put(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{radius:.2}"{hollow}/>"#));
             }
-            Marker::Square => {
+            MarkerSymbol::Square => {
                 let [left, top, side] = [x - 0.9 * radius, y - 0.9 * radius, 1.8 * radius];
                 self.put(format_args!(
                     r#"<rect x="{left:.2}" y="{top:.2}" width="{side:.2}" height="{side:.2}"{hollow}/>"#
                 ));
             }
-            Marker::Triangle => {
+            MarkerSymbol::Triangle => {
                 let corners = [
                     [x, y - 1.2 * radius],
                     [x + 1.1 * radius, y + 0.8 * radius],
@@ -228,7 +228,7 @@ impl Canvas {
                 ];
                 self.polygon(&corners, hollow);
             }
-            Marker::Diamond => {
+            MarkerSymbol::Diamond => {
                 let far = 1.25 * radius;
                 self.polygon(&[[x, y - far], [x + far, y], [x, y + far], [x - far, y]], hollow);
             }
@@ -236,7 +236,7 @@ impl Canvas {
     }
 
     fn polygon(&mut self, corners: &[[f64; 2]], hollow: &str) {
-        let corners = joined(corners);
+        let corners = join_points(corners);
         self.put(format_args!(r#"<polygon points="{corners}"{hollow}/>"#));
     }
 
@@ -269,7 +269,7 @@ mod tests {
 
     #[test]
     fn lines_break_between_words() {
-        assert_eq!(wrapped("one two three", 60.0), ["one two", "three"]);
-        assert_eq!(wrapped("  ", 60.0), Vec::<String>::new());
+        assert_eq!(wrap_text("one two three", 60.0), ["one two", "three"]);
+        assert_eq!(wrap_text("  ", 60.0), Vec::<String>::new());
     }
 }

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use super::super::identify::coverage_table;
 use super::super::outliers;
 use super::super::table::{self, accuracy_table, joints_words, leading_words, line, lines, number};
-use super::{delivered, uncertainty};
+use super::{delivered_name, uncertainty};
 use poecal_calibrate::{FormulationWords, NoiseSource};
 use poecal_model::camera::Centre;
-use poecal_numerics::error::shown;
+use poecal_numerics::error::shorten_name;
 use poecal_numerics::solve::Termination;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::{CalibrationFile, CommonEntry, PicturesEntry};
 
 pub(crate) fn all(out: &mut String, file: &CalibrationFile) {
@@ -28,7 +28,7 @@ pub(crate) fn all(out: &mut String, file: &CalibrationFile) {
         out.push_str("  (without suspected rows)\n");
     }
     out.push('\n');
-    outliers::suspected(out, file);
+    outliers::describe_suspects(out, file);
     line(out, "solver", &solver_words(file));
     if let Some(words) = formulation_words(file) {
         line(out, "formulation", &words);
@@ -37,7 +37,7 @@ pub(crate) fn all(out: &mut String, file: &CalibrationFile) {
         line(out, "condition", &format!("{condition:.3e} over the determined unknowns"));
     }
     trust(out, file);
-    corrected(out, file);
+    describe_corrected(out, file);
     if !file.coverage.is_empty() {
         coverage_table(out, file.coverage.iter().zip(file.joints.iter().map(|joint| joint.kind)));
         out.push('\n');
@@ -46,7 +46,7 @@ pub(crate) fn all(out: &mut String, file: &CalibrationFile) {
 
 fn robot_words(file: &CalibrationFile) -> String {
     let [name, base, tip] =
-        [&file.robot.name, &file.robot.base_link, &file.robot.tip_link].map(|name| shown(name));
+        [&file.robot.name, &file.robot.base_link, &file.robot.tip_link].map(|name| shorten_name(name));
     format!("{name}: {}, from {base} to {tip}", joints_words(file.joints.iter().map(|it| it.kind)))
 }
 
@@ -122,12 +122,13 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
     if usual_residual && (&*solver.formulation, &*solver.method) == (usual.formulation, usual.method) {
         return None;
     }
-    let shown = [&solver.formulation, &solver.pose_residual, &solver.method].map(|word| visible(word));
+    let shown =
+        [&solver.formulation, &solver.pose_residual, &solver.method].map(|word| escape_invisible(word));
     let [formulation, pose_residual, method] = &shown;
     let residual = if poses { format!(" {pose_residual} residual of poses,") } else { String::new() };
     let mut words = format!("{formulation},{residual} {method}");
     if let Some(note) = &solver.note {
-        words.push_str(&format!("; {}", visible(note)));
+        words.push_str(&format!("; {}", escape_invisible(note)));
     }
     Some(words)
 }
@@ -139,7 +140,7 @@ const NOT_ENTERED: &str = "not for entering into a controller: `poecal offsets` 
 const SHOWN: usize = 6;
 
 /// Evidence for each group of terms, and their effects.
-fn corrected(out: &mut String, file: &CalibrationFile) {
+fn describe_corrected(out: &mut String, file: &CalibrationFile) {
     let Some(found) = &file.corrected else { return };
     let left_out = |sizes: &BTreeMap<String, f64>| {
         found.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out)
@@ -183,7 +184,7 @@ fn trust(out: &mut String, file: &CalibrationFile) {
             "{} mm (RMS) at the measured configurations, {} mm anywhere within the limits, by the {} model",
             number(expected.measured.sigma_position_mm),
             number(expected.range.sigma_position_mm),
-            delivered(file)
+            delivered_name(file)
         );
         line(out, "expected", &words);
     }
@@ -212,7 +213,7 @@ fn trust(out: &mut String, file: &CalibrationFile) {
     }
     let changes = file.corrections.iter().filter_map(|it| {
         let change = it.change.as_ref()?;
-        Some(format!("{}: {}", visible(&it.joint), visible(&change.words)))
+        Some(format!("{}: {}", escape_invisible(&it.joint), escape_invisible(&change.words)))
     });
     let changes: Vec<String> = changes.collect();
     let controller = (!changes.is_empty()).then(|| NOT_ENTERED.to_owned());

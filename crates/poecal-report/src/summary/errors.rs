@@ -1,11 +1,11 @@
 //! The decisive errors: of rows that were not fitted, before and after.
 
-use super::super::found::found_words;
+use super::super::fitted_cameras::found_words;
 use super::super::table::{
     STATISTICS, corner_words, further_words, line, lines, number, number_or_dash, pictures_words, row,
 };
-use super::look::reasons;
-use super::{Expectation, expected};
+use super::review_points::reasons;
+use super::{Expectation, expected_summary};
 use poecal_calibrate::{
     AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, FEWEST_HELD_OUT, Level, ModelAccuracy,
     SetAccuracy,
@@ -20,7 +20,7 @@ const WIDTHS: [usize; 2] = [38, 10];
 pub(crate) type ModelRow<'a> = (String, &'a ModelAccuracy, String);
 
 /// The rows that a calibration is judged by, and the errors of the models on them.
-pub(crate) struct Leading<'a> {
+pub(crate) struct LeadingRows<'a> {
     pub(crate) set: &'a SetAccuracy,
     pub(crate) models: Vec<ModelRow<'a>>,
     /// Words after the name of the rows: the rows that are left out.
@@ -29,7 +29,7 @@ pub(crate) struct Leading<'a> {
     pub(crate) beside: Option<(String, Vec<ModelRow<'a>>)>,
 }
 
-impl<'a> Leading<'a> {
+impl<'a> LeadingRows<'a> {
     /// For rows held out all of them, with those that are not suspected beside them. For fitted rows, if none was held out, those that are not
     /// suspected, as in cross-validation, with all beside them.
     pub(crate) fn from_calibration(file: &'a CalibrationFile) -> Self {
@@ -52,7 +52,7 @@ impl<'a> Leading<'a> {
             }),
         };
         let beside = beside.map(|(words, (set, key))| (words, models_of(file, set, key)));
-        Leading { set, models: models_of(file, set, key), without, beside }
+        LeadingRows { set, models: models_of(file, set, key), without, beside }
     }
 
     /// Before and after: the first and the last model.
@@ -103,7 +103,7 @@ pub(crate) fn has_terms(file: &CalibrationFile) -> bool {
 
 /// The rows on which the errors before and after were measured.
 pub(crate) fn judged_on(file: &CalibrationFile) -> String {
-    let Leading { set, without, .. } = Leading::from_calibration(file);
+    let LeadingRows { set, without, .. } = LeadingRows::from_calibration(file);
     let rows = if set.calibrated.of_pictures(set.count).is_some() { "pictures" } else { "rows" };
     if file.accuracy.held_out.is_some() {
         format!("{rows} held out")
@@ -127,16 +127,16 @@ pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> 
         let (quantity, key) = (Quantity::Position, "corrected.left_out_position_mm".to_owned());
         return found.left_out_position_mm.map(|rms| CrossValidated { quantity, rms, key });
     }
-    let (quantity, rms) = file.cross_validation.as_ref()?.random.rms.leading()?;
+    let (quantity, rms) = file.cross_validation.as_ref()?.random.rms.leading_value()?;
     Some(CrossValidated { quantity, rms, key: format!("cross_validation.random.rms.{}", quantity.key()) })
 }
 
 /// Reason why the expected error is larger than the measured one, if it is.
 pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
-    let leading = Leading::from_calibration(file);
+    let leading = LeadingRows::from_calibration(file);
     let [_, (_, after, _)] = leading.ends()?;
     let measured_mm = after.get(Quantity::Position)?.rms;
-    (expected(file)?.error_mm > measured_mm).then_some(
+    (expected_summary(file)?.error_mm > measured_mm).then_some(
         "The expected error is larger than the measured one: it counts every residual that no stated noise explains as robot error, and it \
          allows for joint effects that these rows leave open.",
     )
@@ -144,7 +144,7 @@ pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
 
 /// Errors before and after on the same rows, the expected error, and its domain.
 pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
-    let leading = Leading::from_calibration(file);
+    let leading = LeadingRows::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return };
     let held_out = file.accuracy.held_out.is_some();
     let judging = if held_out { "held out" } else { "fitted" };
@@ -160,12 +160,12 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
     let on = judged_on(file);
     line(out, "before", &format!("{} (RMS) on {on}: {}", words(before.1), before.0));
     line(out, "after", &format!("{} (RMS) on {on}: {} model", words(after.1), after.0));
-    if let Some(expectation) = expected(file) {
+    if let Some(expectation) = expected_summary(file) {
         say_expected(out, file, expectation);
     }
     let largest = after
         .1
-        .leading()
+        .leading_value()
         .map(|(quantity, error)| format!(", at most {} {}", number(error.max), quantity.unit().symbol()));
     let beside = leading.beside.as_ref().and_then(|(of, models)| {
         let (_, model, _) = models.get(1)?;
@@ -246,7 +246,7 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
 
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or else of those fitted.
 pub(crate) fn table(out: &mut String, file: &CalibrationFile) {
-    let leading = Leading::from_calibration(file);
+    let leading = LeadingRows::from_calibration(file);
     let (set, rows) = (leading.set, leading.rows());
     let name = if file.accuracy.held_out.is_some() { "held out" } else { "fitted" };
     for (quantity, _) in set.calibrated.iter() {
@@ -269,18 +269,19 @@ mod tests {
     use super::super::{Detail, summary};
     use super::*;
     use poecal_calibrate::{CalibrationOptions, calibrate};
-    use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
+    use poecal_model::simulate::{GrossErrors, SessionKind, Simulation, elbow};
     use poecal_results::calibration_file::Inputs;
 
     /// All of thirty poses are fitted: the stated errors before and after exclude the one with a large deviation.
     #[test]
     fn suspected_rows_do_not_count_where_none_is_held_out() {
-        let mut made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
-        let gross = Gross { share: 0.04, ..Gross::default() }.spoil(&mut made.data).len();
+        let mut made =
+            Simulation { count: 30, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+        let gross = GrossErrors { share: 0.04, ..GrossErrors::default() }.spoil(&mut made.data).len();
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
         assert!(file.accuracy.held_out.is_none() && (gross, file.robust.suspected.training) == (1, 1));
-        let leading = Leading::from_calibration(&file);
+        let leading = LeadingRows::from_calibration(&file);
         let [before, after] = leading.ends().unwrap();
         let rms = |model: &ModelAccuracy| model.get(Quantity::Position).unwrap().rms;
         let all = &file.accuracy.training;

@@ -1,23 +1,23 @@
 //! The table of a calibration in 80 columns: the verdict, points of attention, the errors, the unknowns. All else on demand.
 
-mod brief;
 mod details;
 mod errors;
-mod look;
 mod names;
+mod review_points;
+mod short_table;
 
-pub use brief::Short;
 pub(crate) use errors::{
-    Leading, ModelRow, cross_validated, has_terms, judged_on, none_held_out, why_larger,
+    LeadingRows, ModelRow, cross_validated, has_terms, judged_on, none_held_out, why_larger,
 };
-pub(crate) use look::{Place, Point, SEE_ROBUST, look_at, reasons, unknowns_words};
 pub(crate) use names::{MOST, names};
+pub(crate) use review_points::{PointSource, ReviewPoint, SEE_ROBUST, look_at, reasons, unknowns_words};
+pub use short_table::ShortTable;
 
 use super::acceptance;
-use super::table::{line, lines, number, rounded};
+use super::table::{format_triple, line, lines, number};
 use poecal_calibrate::{Event, Level, TermGroup};
 use poecal_fit::analysis::Cause;
-use poecal_numerics::error::shown as name_shown;
+use poecal_numerics::error::shorten_name as name_shown;
 use poecal_results::calibration_file::{
     CalibrationFile, ClockEntry, CorrectedEntry, IdentifiabilityEntry, UncertaintyEntry,
 };
@@ -41,8 +41,8 @@ pub enum Detail {
 /// use poecal_calibrate::{CalibrationOptions, calibrate};
 /// use poecal_results::calibration_file::{CalibrationFile, Inputs};
 /// use poecal_report::{Detail, summary};
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// use poecal_model::simulate::{SessionKind, Simulation, elbow};
+/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let short = summary(&file, Detail::Short);
@@ -53,7 +53,7 @@ pub enum Detail {
 #[must_use]
 pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
     if detail == Detail::Short {
-        return short(file, 0).table;
+        return short_summary(file, 0).table;
     }
     let mut out = String::new();
     top(&mut out, file);
@@ -71,8 +71,8 @@ pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
 
 /// The short table with its next step, after `said` printed lines.
 #[must_use]
-pub fn short(file: &CalibrationFile, said: usize) -> Short {
-    brief::brief(file, said)
+pub fn short_summary(file: &CalibrationFile, said: usize) -> ShortTable {
+    short_table::short_table(file, said)
 }
 
 /// The verdict, the errors, their domain, limits.
@@ -86,7 +86,7 @@ fn top(out: &mut String, file: &CalibrationFile) {
 
 /// The unknowns that the rows determine, and the findings on targets, joints and clocks.
 fn rest(out: &mut String, file: &CalibrationFile) {
-    known(out, file);
+    describe_determined(out, file);
     file.clocks.iter().for_each(|clock| line(out, "clock", &clock_words(clock)));
 }
 
@@ -105,7 +105,7 @@ pub(crate) struct Expectation {
 }
 
 /// Expected error according to the verdict; `None` if no use is advised or no error is known.
-pub(crate) fn expected(file: &CalibrationFile) -> Option<Expectation> {
+pub(crate) fn expected_summary(file: &CalibrationFile) -> Option<Expectation> {
     let verdict = file.verdict.as_ref().filter(|it| it.level != Level::DoNotUse)?;
     let (own, key) = uncertainty(file)?;
     Some(Expectation {
@@ -119,7 +119,7 @@ pub(crate) fn expected(file: &CalibrationFile) -> Option<Expectation> {
 }
 
 /// The delivered model.
-pub(crate) fn delivered(file: &CalibrationFile) -> &'static str {
+pub(crate) fn delivered_name(file: &CalibrationFile) -> &'static str {
     if has_terms(file) { "corrected" } else { "calibrated" }
 }
 
@@ -177,7 +177,7 @@ fn clock_words(clock: &ClockEntry) -> String {
 
 /// Number of determined unknowns, and of weakly determined ones.
 pub(crate) fn determined_words(found: &IdentifiabilityEntry) -> String {
-    let weak = match found.weakly() {
+    let weak = match found.weakly_determined() {
         0 => String::new(),
         weak => format!(" ({weak} weakly)"),
     };
@@ -185,7 +185,7 @@ pub(crate) fn determined_words(found: &IdentifiabilityEntry) -> String {
 }
 
 /// Unknowns that the rows determine, and those that they do not.
-fn known(out: &mut String, file: &CalibrationFile) {
+fn describe_determined(out: &mut String, file: &CalibrationFile) {
     let found = &file.identifiability;
     let fitted = file.accuracy.training.count;
     let all = fitted + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
@@ -237,7 +237,7 @@ fn targets(file: &CalibrationFile) -> Vec<String> {
     let link = if file.robot.tip_link.is_empty() { "the tip" } else { &file.robot.tip_link };
     let on_tip = file.targets.iter().filter(|(_, target)| target.on.is_none());
     let told = on_tip.map(|(name, target)| {
-        let place = rounded(target.position_m, 1e3, 2);
+        let place = format_triple(target.position_m, 1e3, 2);
         format!("{}: at {place} mm in the frame of {}", name_shown(name), name_shown(link))
     });
     let mut told: Vec<String> = told.collect();
@@ -276,13 +276,13 @@ pub(crate) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, Str
             let unit = joint.kind.unit_of(*term);
             let sign = if coefficient < 0.0 { "-" } else { "" };
             let name = format!("{}.{term}", joint.name);
-            let value = format!("{sign}{}", number(unit.shown(coefficient.abs())));
+            let value = format!("{sign}{}", number(unit.in_shown_unit(coefficient.abs())));
             // The prior alone determines as much as half its own width.
             let (spread, open) = match file.sigma(&name) {
                 Some(sigma) if sigma > 0.5 * joint.kind.deviation_of(*term) => {
                     (String::new(), " (not determined)")
                 }
-                Some(sigma) => (format!(" ± {}", number(unit.shown(sigma))), ""),
+                Some(sigma) => (format!(" ± {}", number(unit.in_shown_unit(sigma))), ""),
                 None if file.is_open(&name) => (String::new(), " (not determined)"),
                 None => (String::new(), ""),
             };

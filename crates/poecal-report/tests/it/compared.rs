@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_calibrate::{CalibrationOptions, calibrate};
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation, elbow, random_configuration, scara};
-use poecal_report::Comparison;
+use poecal_model::simulate::{SessionKind, Simulation, elbow, random_configuration, scara};
+use poecal_report::ComparisonReport;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::compare::compare;
 use rand_chacha::ChaCha8Rng;
@@ -28,12 +28,12 @@ fn simulation() -> Simulation {
 }
 
 /// An elbow as it was made: with errors of its own.
-fn made(seed: u64) -> Robot {
-    simulation().perturbed(&elbow(), &mut ChaCha8Rng::seed_from_u64(seed))
+fn make_robot(seed: u64) -> Robot {
+    simulation().perturb(&elbow(), &mut ChaCha8Rng::seed_from_u64(seed))
 }
 
 /// The calibration of a session of a robot.
-fn session(nominal: &Robot, actual: &Robot, kind: Kind, seed: u64) -> CalibrationFile {
+fn session(nominal: &Robot, actual: &Robot, kind: SessionKind, seed: u64) -> CalibrationFile {
     let mut generator = ChaCha8Rng::seed_from_u64(1000 + seed);
     let measured = simulation().measure(nominal, actual.clone(), kind, &mut generator).unwrap();
     let calibration = calibrate(nominal, &measured.data, &CalibrationOptions::default()).unwrap();
@@ -48,7 +48,7 @@ fn joint3_moved(robot: &Robot, deg: f64) -> Robot {
 
 /// Distance (RMS, m) between the tips of two robots in random configurations, with base and tool fitted to first order: by linear least squares,
 /// independent of the library's own.
-fn apart(a: &Robot, b: &Robot) -> f64 {
+fn tip_distance(a: &Robot, b: &Robot) -> f64 {
     let mut generator = ChaCha8Rng::seed_from_u64(77);
     let (mut rows, mut differences) = (Vec::new(), Vec::new());
     for _ in 0..2000 {
@@ -69,11 +69,11 @@ fn apart(a: &Robot, b: &Robot) -> f64 {
 
 #[test]
 fn two_sessions_of_one_robot_are_told_as_one() {
-    for kind in [Kind::POSE, Kind::POINT] {
+    for kind in [SessionKind::POSE, SessionKind::POINT] {
         let trials = trials(60).at_least(10);
         let (mut alarms, mut share, mut moved, mut largest) = (0, 0.0, 0, 0f64);
         for seed in trials.seeds() {
-            let actual = made(seed);
+            let actual = make_robot(seed);
             let [first, second] = [2 * seed, 2 * seed + 1].map(|it| session(&elbow(), &actual, kind, it));
             let found = compare(&first, &second, None).unwrap();
             let test = found.test.unwrap();
@@ -101,15 +101,15 @@ fn a_joint_that_moved_is_named() {
     let trials = trials(20);
     let (mut named, mut alone, mut worst, mut off) = (0, 0, 0f64, 0f64);
     for seed in trials.seeds() {
-        let actual = made(seed);
-        let first = session(&elbow(), &actual, Kind::POSE, 2 * seed);
-        let second = session(&elbow(), &joint3_moved(&actual, 0.1), Kind::POSE, 2 * seed + 1);
+        let actual = make_robot(seed);
+        let first = session(&elbow(), &actual, SessionKind::POSE, 2 * seed);
+        let second = session(&elbow(), &joint3_moved(&actual, 0.1), SessionKind::POSE, 2 * seed + 1);
         let found = compare(&first, &second, None).unwrap();
-        let names: Vec<&str> = found.changed().map(|it| it.name.as_str()).collect();
+        let names: Vec<&str> = found.changed_joints().map(|it| it.name.as_str()).collect();
         named += usize::from(names.contains(&"joint3"));
         alone += usize::from(names == ["joint3"]);
         let tip = &found.tip;
-        let truth = apart(&actual, &joint3_moved(&actual, 0.1));
+        let truth = tip_distance(&actual, &joint3_moved(&actual, 0.1));
         off = off.max((tip.rms_m - truth).abs() / truth);
         assert_eq!(
             found.is_moved(),
@@ -124,7 +124,7 @@ fn a_joint_that_moved_is_named() {
         if seed == 0 {
             println!(
                 "{}",
-                Comparison::new(("first", &first), ("second", &second), &found)
+                ComparisonReport::new(("first", &first), ("second", &second), &found)
                     .unwrap()
                     .text(poecal_report::Detail::Full)
             );
@@ -147,8 +147,8 @@ fn a_joint_that_moved_is_named() {
 
 #[test]
 fn another_robot_is_refused() {
-    let first = session(&elbow(), &made(1), Kind::POSE, 1);
-    let second = session(&scara(), &scara(), Kind::POSE, 2);
+    let first = session(&elbow(), &make_robot(1), SessionKind::POSE, 1);
+    let second = session(&scara(), &scara(), SessionKind::POSE, 2);
     let error = compare(&first, &second, None).unwrap_err().to_string();
     println!("{error}");
     assert!(error.contains("`joint3`") || error.contains("joints in the second"), "{error}");
@@ -156,10 +156,10 @@ fn another_robot_is_refused() {
     let mut longer = elbow();
     for joint in longer.joints.iter_mut().skip(3) {
         let by = poecal_arm::lie::Pose::from_translation([0.0, 0.08, 0.06].into());
-        joint.screw = joint.screw.transformed(&by);
+        joint.screw = joint.screw.transform(&by);
         joint.frame = by * joint.frame;
     }
-    let second = session(&longer, &longer, Kind::POSE, 3);
+    let second = session(&longer, &longer, SessionKind::POSE, 3);
     let error = compare(&first, &second, None).unwrap_err().to_string();
     println!("{error}");
     assert!(error.contains("nominal axis of joint `joint"), "{error}");
@@ -169,7 +169,7 @@ fn another_robot_is_refused() {
 fn corrections_say_which_offset_was_put_in() {
     let offsets = [0.0, -0.9, 0.5, 0.0, 0.3, 0.0].map(f64::to_radians);
     let actual = into_screws(&elbow(), &offsets).unwrap();
-    let file = session(&elbow(), &actual, Kind::POSE, 7);
+    let file = session(&elbow(), &actual, SessionKind::POSE, 7);
     let mut worst = 0f64;
     for (entry, offset) in file.corrections.iter().zip(offsets) {
         let change = entry.change.as_ref().unwrap();
@@ -194,9 +194,9 @@ fn corrections_say_which_offset_was_put_in() {
 fn standard_deviations_of_the_parts_are_those_of_sessions() {
     // Errors of the parts over their standard deviations, over sessions of one robot: their mean square is 1.
     let trials = trials(60).at_least(10);
-    let actual = made(3);
+    let actual = make_robot(3);
     let files: Vec<CalibrationFile> =
-        trials.seeds().map(|seed| session(&elbow(), &actual, Kind::POSE, seed)).collect();
+        trials.seeds().map(|seed| session(&elbow(), &actual, SessionKind::POSE, seed)).collect();
     let changes = |file: &CalibrationFile| -> Vec<_> {
         file.corrections.iter().filter_map(|it| it.change.clone()).collect()
     };
@@ -243,14 +243,14 @@ fn standard_deviations_of_the_parts_are_those_of_sessions() {
     println!("variances over stated ones: {least:.2} to {most:.2}, mean {mean:.2}");
     assert!(squares.len() >= 16);
     // The tolerance keeps estimates nearer to nominal than the stated spread, which includes the part that it hides; and 60 sessions scatter by 18 %.
-    assert!(most < 1.8 + trials.more(std::f64::consts::SQRT_2), "{most}");
+    assert!(most < 1.8 + trials.tolerance_factor(std::f64::consts::SQRT_2), "{most}");
     assert!(mean > 0.2, "{mean}");
 }
 
 #[test]
 fn what_is_known_only_together_is_said() {
-    let actual = made(4);
-    let file = session(&elbow(), &actual, Kind::POINT, 5);
+    let actual = make_robot(4);
+    let file = session(&elbow(), &actual, SessionKind::POINT, 5);
     for (common, entry) in file.common.iter().zip(0..) {
         println!("{entry}: {:.0} % {}", 100.0 * common.share, common.words);
         assert!(common.joints.len() > 1 && common.share > 0.1);

@@ -7,7 +7,7 @@ use nalgebra::{Vector3, Vector6};
 use poecal_arm::lie::{Pose, Twist, rotation};
 use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation, elbow, gantry, scara, seven_axis};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, scara, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::residuals::Residuals;
 
@@ -24,7 +24,7 @@ fn configurations(file: &CalibrationFile, count: usize) -> Vec<Vec<f64>> {
 }
 
 /// The tool that takes the nominal tips to the actual ones: of the relative poses, the one about which their logarithms sum to zero.
-fn taught(relative: &[Pose]) -> Pose {
+fn taught_tool(relative: &[Pose]) -> Pose {
     let mut tool = relative[0];
     for _ in 0..20 {
         let sum = relative
@@ -41,7 +41,7 @@ fn middle(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-fn file_of(robot: &Robot, kind: Kind, options: &CalibrationOptions) -> (CalibrationFile, Residuals) {
+fn file_of(robot: &Robot, kind: SessionKind, options: &CalibrationOptions) -> (CalibrationFile, Residuals) {
     let device_anywhere = options.frame == DeviceFrameKnowledge::Unknown;
     let made = Simulation { count: 60, device_anywhere, ..Simulation::default() }.run(robot, kind).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, options).unwrap();
@@ -56,17 +56,17 @@ fn file_of(robot: &Robot, kind: Kind, options: &CalibrationOptions) -> (Calibrat
 fn displacements_are_those_of_the_two_robots() {
     let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..CalibrationOptions::default() };
     for robot in [elbow(), seven_axis(), scara()] {
-        let (file, _) = file_of(&robot, Kind::POSE, &options);
+        let (file, _) = file_of(&robot, SessionKind::POSE, &options);
         let found = file.compensation.as_deref().unwrap();
         let nominal = file.nominal_robot().unwrap();
-        let actual = file.corrected().unwrap_or_else(|| file.clone()).robot().unwrap();
+        let actual = file.corrected_file().unwrap_or_else(|| file.clone()).robot().unwrap();
         let sample = configurations(&file, found.all.configurations);
         let nominal: Vec<Pose> = sample.iter().map(|q| nominal.forward_kinematics(q)).collect();
         let actual: Vec<Pose> = sample.iter().map(|q| actual.forward_kinematics(q)).collect();
         let relative: Vec<Pose> = nominal.iter().zip(&actual).map(|(n, a)| n.inverse() * *a).collect();
         // The file states that it is fitted over every third.
         let fitted: Vec<Pose> = relative.iter().step_by(3).copied().collect();
-        let tool = taught(&fitted);
+        let tool = taught_tool(&fitted);
         let meant: Vec<Pose> = nominal.iter().map(|it| *it * tool).collect();
         let moved = |k: usize| 1e3 * (meant[k].translation - actual[k].translation).norm();
         let turned = |k: usize| {
@@ -118,7 +118,7 @@ fn displacements_are_those_of_the_two_robots() {
 #[test]
 fn corrections_are_told_where_an_arm_can_be_corrected() {
     let options = CalibrationOptions::default();
-    let (file, _) = file_of(&elbow(), Kind::POSE, &options);
+    let (file, _) = file_of(&elbow(), SessionKind::POSE, &options);
     let found = file.compensation.unwrap();
     println!("{:?}", found.joints);
     assert_eq!(found.joints.len(), 6);
@@ -127,15 +127,15 @@ fn corrections_are_told_where_an_arm_can_be_corrected() {
         assert!(0.0 < median && median < largest && largest < 0.6_f64.to_degrees() && joint.unit == "deg");
     }
     // An arm of fewer joints cannot correct every displacement, and no corrections are stated.
-    let (file, _) = file_of(&scara(), Kind::POSE, &options);
+    let (file, _) = file_of(&scara(), SessionKind::POSE, &options);
     assert!(file.compensation.unwrap().joints.is_empty());
-    let (file, _) = file_of(&gantry(), Kind::POSE, &options);
+    let (file, _) = file_of(&gantry(), SessionKind::POSE, &options);
     println!("gantry: {:?}", file.compensation.map(|it| (it.about, it.all, it.joints)));
 }
 
 #[test]
 fn files_without_it_have_a_report_without_it() {
-    let (mut file, residuals) = file_of(&elbow(), Kind::POINT, &CalibrationOptions::default());
+    let (mut file, residuals) = file_of(&elbow(), SessionKind::POINT, &CalibrationOptions::default());
     let page = poecal_report::calibration_page(&file, &residuals).unwrap().concat();
     assert!(page.contains("id=\"compensation\"") && page.contains("Error of an uncorrected program"));
     file.compensation = None;

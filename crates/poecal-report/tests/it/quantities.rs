@@ -87,7 +87,7 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     let mixed = text(&rows);
     let residuals = Residuals::parse(&mixed, "residuals.csv").unwrap();
     assert_eq!(residuals.text(), mixed);
-    let leading: Vec<_> = residuals.rows().iter().map(|row| row.errors.leading().unwrap().0).collect();
+    let leading: Vec<_> = residuals.rows().iter().map(|row| row.errors.leading_value().unwrap().0).collect();
     assert_eq!(leading.iter().filter(|it| **it == Quantity::Position).count(), points);
 
     // A row without a quantity is no row.
@@ -105,11 +105,11 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
         row[rotation..rotation + 6].iter_mut().for_each(|cell| "0".clone_into(cell));
     }
     let residuals = Residuals::parse(&text(&rows), "residuals.csv").unwrap();
-    assert_eq!(residuals.measured(), [Quantity::Rotation]);
+    assert_eq!(residuals.measured_quantities(), [Quantity::Rotation]);
     let mut value = without_positions(&serde_json::from_str(FILE).unwrap());
     for (set, held_out) in [("training", false), ("held_out", true)] {
         let own = residuals.rows().iter().filter(|row| row.held_out == held_out);
-        let errors: Vec<f64> = own.map(|row| row.errors.rotation_deg().unwrap().calibrated()).collect();
+        let errors: Vec<f64> = own.map(|row| row.errors.rotation_deg().unwrap().calibrated_error()).collect();
         let rms = (errors.iter().map(|it| it * it).sum::<f64>() / errors.len() as f64).sqrt();
         value["accuracy"][set]["calibrated"]["rotation_deg"]["rms"] = rms.into();
     }

@@ -2,7 +2,7 @@
 
 use crate::report_page::{Session, data_of, numbers_of};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
-use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
+use poecal_model::simulate::{GrossErrors, SessionKind, Simulation, elbow};
 use serde_json::Value;
 
 /// The markup of a chart.
@@ -34,7 +34,7 @@ fn dots(chart: &str, class: &str) -> Vec<Option<[f64; 2]>> {
 }
 
 /// Position of a value along an axis, by the labels of its first and its last tick; `share` is the attribute with their positions.
-fn along(chart: &str, axis: &str, share: &str, value: f64) -> f64 {
+fn place_on_axis(chart: &str, axis: &str, share: &str, value: f64) -> f64 {
     let group = chart.split_once(&format!("<g class=\"{axis}\"")).unwrap().1.split_once("</g>").unwrap().0;
     let ticks: Vec<(f64, f64)> = group
         .split("<text ")
@@ -61,8 +61,9 @@ fn rows_of(data: &Value, class: &str) -> Vec<usize> {
 
 #[test]
 fn every_row_has_its_dot_where_its_error_is() {
-    let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
-    let gross = Gross { share: 0.05, ..Gross::default() }.spoil(&mut made.data);
+    let mut made =
+        Simulation { count: 80, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let gross = GrossErrors { share: 0.05, ..GrossErrors::default() }.spoil(&mut made.data);
     let page = Session::from_dataset(&elbow(), made.data).page();
     let (data, chart) = (data_of(&page), chart(&page, "rows"));
     let errors = numbers_of(&data["rows"]["error_mm"]);
@@ -75,8 +76,8 @@ fn every_row_has_its_dot_where_its_error_is() {
         for (row, dot) in rows.into_iter().zip(dots) {
             let [x, y] = dot.unwrap();
             let expected = [
-                width * along(chart, "x", "x", row as f64 + 1.0),
-                height * along(chart, "y", "y", errors[row].unwrap()),
+                width * place_on_axis(chart, "x", "x", row as f64 + 1.0),
+                height * place_on_axis(chart, "y", "y", errors[row].unwrap()),
             ];
             // Half a unit, and ticks to a tenth of a per cent.
             assert!(
@@ -93,7 +94,7 @@ fn every_row_has_its_dot_where_its_error_is() {
 #[test]
 fn long_sessions_have_few_dots_and_every_chart() {
     for (count, most, few) in [(100, 100, 100), (5000, 4000, 600)] {
-        let page = Session::new(&elbow(), Kind::POSE, count).page();
+        let page = Session::new(&elbow(), SessionKind::POSE, count).page();
         let drawn = |markup: &str| markup.matches("h0").count() + markup.matches("h1").count();
         let [rows, components, joints] = ["rows", "components", "joints"].map(|name| chart(&page, name));
         assert!(drawn(rows) <= most && drawn(rows) > most * 8 / 10, "{}", drawn(rows));
@@ -130,7 +131,7 @@ fn a_joint_of_the_other_arm_has_no_residual_along_its_motion() {
     };
     let text = include_str!("../../../poecal-testing/data/torso.urdf");
     let document = UrdfDocument::parse(text, "torso.urdf", &selection).unwrap();
-    let page = Session::new(document.robot(), Kind::POSE, 300).page();
+    let page = Session::new(document.robot(), SessionKind::POSE, 300).page();
     let data = data_of(&page);
     let targets = data["rows"]["target"].as_array().unwrap();
     let joints = chart(&page, "joints");

@@ -6,7 +6,7 @@ use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, Sizes, cali
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_model::measurement::{Dataset, Measurement, Quantity, Set};
 use poecal_model::robot::{Joint, Robot};
-use poecal_model::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
+use poecal_model::simulate::{GrossErrors, SessionKind, Simulation, elbow, gantry, scara, seven_axis};
 use poecal_report::calibration_page;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::residuals::Residuals;
@@ -20,16 +20,16 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    pub(crate) fn new(robot: &Robot, kind: Kind, count: usize) -> Self {
+    pub(crate) fn new(robot: &Robot, kind: SessionKind, count: usize) -> Self {
         let made = Simulation { count, ..Simulation::default() }.run(robot, kind).unwrap();
         Session::from_dataset(robot, made.data)
     }
 
     pub(crate) fn from_dataset(robot: &Robot, data: Dataset) -> Self {
-        Session::with(robot, data, &CalibrationOptions::default())
+        Session::with_options(robot, data, &CalibrationOptions::default())
     }
 
-    fn with(robot: &Robot, data: Dataset, options: &CalibrationOptions) -> Self {
+    fn with_options(robot: &Robot, data: Dataset, options: &CalibrationOptions) -> Self {
         let calibration = calibrate(robot, &data, options).unwrap();
         let inputs = Inputs { model: "robot.urdf".into(), ..Inputs::default() };
         let text = CalibrationFile::new(&calibration, &data, inputs).to_text().unwrap();
@@ -47,8 +47,9 @@ impl Session {
 }
 
 /// Rows with several configurations that were repeated.
-fn repeated() -> Dataset {
-    let mut made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
+fn repeated_rows() -> Dataset {
+    let mut made =
+        Simulation { count: 50, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
     for row in (0..5).cycle().take(20) {
         let readings = made.data.readings(row).to_vec();
         let mut observation = made.data.observations[row];
@@ -128,19 +129,20 @@ pub(crate) fn check_figures(name: &str, session: &Session) {
 #[test]
 fn every_figure_is_that_of_the_calibration_file() {
     for (name, robot, kind) in [
-        ("elbow, points", elbow(), Kind::POINT),
-        ("seven axes, poses", seven_axis(), Kind::POSE),
-        ("SCARA, mixed", scara(), Kind::MIXED),
-        ("gantry, poses", gantry(), Kind::POSE),
+        ("elbow, points", elbow(), SessionKind::POINT),
+        ("seven axes, poses", seven_axis(), SessionKind::POSE),
+        ("SCARA, mixed", scara(), SessionKind::MIXED),
+        ("gantry, poses", gantry(), SessionKind::POSE),
     ] {
         check_figures(name, &Session::new(&robot, kind, 60));
     }
-    let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
-    let gross = Gross { share: 0.05, ..Gross::default() }.spoil(&mut made.data);
+    let mut made =
+        Simulation { count: 80, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let gross = GrossErrors { share: 0.05, ..GrossErrors::default() }.spoil(&mut made.data);
     let session = Session::from_dataset(&elbow(), made.data);
     check_figures("elbow, wrong rows", &session);
     assert!(session.page().contains("Suspected outliers, the worst first") && !gross.is_empty());
-    let mut data = Simulation::default().run(&elbow(), Kind::POINT).unwrap().data;
+    let mut data = Simulation::default().run(&elbow(), SessionKind::POINT).unwrap().data;
     data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
     let session = Session::from_dataset(&elbow(), data);
     check_figures("elbow, nothing held out", &session);
@@ -150,12 +152,13 @@ fn every_figure_is_that_of_the_calibration_file() {
 /// Charts and tables are of one model: the delivered one.
 #[test]
 fn the_page_shows_the_delivered_model() {
-    let data = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap().data;
+    let data =
+        Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap().data;
     let corrections = Corrections::Sizes(Sizes::COMMON);
     let options = CalibrationOptions { corrections, ..CalibrationOptions::default() };
-    let corrected = Session::with(&elbow(), data.clone(), &options);
+    let corrected = Session::with_options(&elbow(), data.clone(), &options);
     let geometry = CalibrationOptions { corrections: Corrections::Off, ..options };
-    let calibrated = Session::with(&elbow(), data, &geometry);
+    let calibrated = Session::with_options(&elbow(), data, &geometry);
     for (session, name, other) in
         [(&corrected, "corrected", "calibrated"), (&calibrated, "calibrated", "corrected")]
     {
@@ -172,7 +175,7 @@ fn the_page_shows_the_delivered_model() {
         let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
         let drawn = numbers_of(&data["rows"]["error_mm"]);
         for (row, drawn) in session.residuals().rows().iter().zip(drawn) {
-            let error = row.errors.get(Quantity::Position).unwrap().delivered();
+            let error = row.errors.get(Quantity::Position).unwrap().delivered_error();
             assert!((drawn.unwrap() - error).abs() <= 1e-5 * error, "{name}");
         }
     }
@@ -194,7 +197,7 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
         &selection,
     )
     .unwrap();
-    let session = Session::new(document.robot(), Kind::POSE, 200);
+    let session = Session::new(document.robot(), SessionKind::POSE, 200);
     check_figures("torso", &session);
     let page = session.page();
     assert!(page.contains("<td class=\"word\">link of torso2</td>"));
@@ -215,13 +218,13 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
     }
     assert_eq!(data["rows"]["instrument"].as_array().unwrap().len(), 200);
     // A single instrument beside a robot without branches is not drawn.
-    let data = data_of(&Session::new(&elbow(), Kind::POSE, 60).page());
+    let data = data_of(&Session::new(&elbow(), SessionKind::POSE, 60).page());
     assert_eq!((&data["draws_instruments"], &data["rows"]["instrument"]), (&false.into(), &Value::Null));
 }
 
 #[test]
 fn repeated_configurations_are_stated_with_accuracy_and_repeatability() {
-    let session = Session::from_dataset(&elbow(), repeated());
+    let session = Session::from_dataset(&elbow(), repeated_rows());
     let found = session.file.repeatability.as_ref().unwrap();
     println!("{found:?}");
     assert_eq!((found.poses, found.rows), (5, 25));
@@ -233,7 +236,7 @@ fn repeated_configurations_are_stated_with_accuracy_and_repeatability() {
 #[test]
 fn configurations_whose_targets_are_all_off_alike_are_named() {
     let robot = elbow();
-    let made = Simulation { count: 60, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap();
+    let made = Simulation { count: 60, ..Simulation::default() }.run(&robot, SessionKind::POINT).unwrap();
     let device_from_base = Pose::from_xyz_rpy([2.0, -1.0, 0.5], [0.1, -0.2, 2.0]);
     let places = [[0.05, 0.0, 0.02], [-0.03, 0.06, 0.0], [0.0, -0.05, 0.04]].map(Vector3::from);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -268,7 +271,7 @@ fn configurations_whose_targets_are_all_off_alike_are_named() {
 
 #[test]
 fn the_page_made_again_from_files_is_the_same() {
-    let session = Session::new(&scara(), Kind::MIXED, 60);
+    let session = Session::new(&scara(), SessionKind::MIXED, 60);
     let inputs = Inputs { model: "robot.urdf".into(), ..Inputs::default() };
     let direct = CalibrationFile::new(&session.calibration, &session.data, inputs);
     let read = Residuals::parse(&session.residuals().text(), "residuals.csv").unwrap();
@@ -291,7 +294,8 @@ fn names_are_no_markup() {
             Robot::new(name, joints, Pose::from_translation(Vector3::new(0.5, 0.0, 0.3))).unwrap();
         robot.base_name = name.to_owned();
         robot.tip_name = name.to_owned();
-        let mut made = Simulation { count: 40, ..Simulation::default() }.run(&robot, Kind::POSE).unwrap();
+        let mut made =
+            Simulation { count: 40, ..Simulation::default() }.run(&robot, SessionKind::POSE).unwrap();
         made.data.files.push(name.into());
         made.data.targets[0] = Some(name.to_owned());
         made.data.ids = vec![name.to_owned(); made.data.len()];
@@ -316,7 +320,7 @@ fn names_are_no_markup() {
 fn pages_are_small_and_long_sessions_are_thinned_and_said_so() {
     let mut sizes = Vec::new();
     for count in [500, 50_000] {
-        let session = Session::new(&elbow(), Kind::POSE, count);
+        let session = Session::new(&elbow(), SessionKind::POSE, count);
         let page = session.page();
         sizes.push(page.len());
         let data = data_of(&page);
@@ -330,18 +334,18 @@ fn pages_are_small_and_long_sessions_are_thinned_and_said_so() {
 
 #[test]
 fn residuals_of_another_calibration_are_refused() {
-    let session = Session::new(&elbow(), Kind::POINT, 60);
-    let other = Session::new(&elbow(), Kind::POINT, 61);
+    let session = Session::new(&elbow(), SessionKind::POINT, 60);
+    let other = Session::new(&elbow(), SessionKind::POINT, 61);
     let error = calibration_page(&session.file, &other.residuals()).unwrap_err().to_string();
     assert!(error.contains("expected 42 and 18 as in the calibration"), "{error}");
-    let other = Session::new(&scara(), Kind::POINT, 60);
+    let other = Session::new(&scara(), SessionKind::POINT, 60);
     let error = calibration_page(&session.file, &other.residuals()).unwrap_err().to_string();
     assert!(error.contains("found residuals without the reading of `joint5`"), "{error}");
 }
 
 #[test]
 fn residuals_that_were_changed_are_told_with_their_place() {
-    let session = Session::new(&elbow(), Kind::POINT, 60);
+    let session = Session::new(&elbow(), SessionKind::POINT, 60);
     let text = session.residuals().text();
     // A message, and the character at its position: columns count characters.
     let refused = |text: &str| {

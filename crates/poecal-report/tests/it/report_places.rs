@@ -2,20 +2,20 @@
 
 use crate::report_page::{Session, check_figures, data_of};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
-use poecal_model::simulate::{Kind, elbow};
+use poecal_model::simulate::{SessionKind, elbow};
 use serde_json::Value;
 
 /// Each kind, the kind of its references, their number, and words of the page.
-const KINDS: [(Kind, &str, usize, &str); 9] = [
-    (Kind::DISTANCE, "anchor", 3, "along the line to the anchor"),
-    (Kind::CHANGE, "anchor", 3, "150 distances"),
-    (Kind::SPHERE, "sphere", 1, "to the sphere that it touched"),
-    (Kind::SOCKET, "socket", 2, "to the middle of the socket"),
-    (Kind::PLANE, "plane", 3, "along the plane's normal to the height measured"),
-    (Kind::FLUSH, "plane", 3, "150 flush faces"),
-    (Kind::DIRECTION, "direction", 1, "150 directions"),
-    (Kind::BALL_BAR, "pair", 1, "150 distances between two configurations"),
-    (Kind::RELATIVE, "pair", 1, "150 poses between two configurations"),
+const KINDS: [(SessionKind, &str, usize, &str); 9] = [
+    (SessionKind::DISTANCE, "anchor", 3, "along the line to the anchor"),
+    (SessionKind::CHANGE, "anchor", 3, "150 distances"),
+    (SessionKind::SPHERE, "sphere", 1, "to the sphere that it touched"),
+    (SessionKind::SOCKET, "socket", 2, "to the middle of the socket"),
+    (SessionKind::PLANE, "plane", 3, "along the plane's normal to the height measured"),
+    (SessionKind::FLUSH, "plane", 3, "150 flush faces"),
+    (SessionKind::DIRECTION, "direction", 1, "150 directions"),
+    (SessionKind::BALL_BAR, "pair", 1, "150 distances between two configurations"),
+    (SessionKind::RELATIVE, "pair", 1, "150 poses between two configurations"),
 ];
 
 fn numbers(value: &Value) -> Vec<f64> {
@@ -51,7 +51,7 @@ fn every_kind_is_drawn_as_what_it_is() {
 /// A sphere has its radius, known or found, in millimetres in the file and in metres in the page's data.
 #[test]
 fn spheres_have_their_radius() {
-    let session = Session::new(&elbow(), Kind::SPHERE, 150);
+    let session = Session::new(&elbow(), SessionKind::SPHERE, 150);
     let radius = session.file.stations[0].radius_mm.unwrap();
     let drawn = data_of(&session.page())["instruments"][0]["radius_m"].as_f64().unwrap();
     println!("radius of a sphere of 50 mm: {radius:.4} mm");
@@ -85,7 +85,7 @@ fn both_arms_are_drawn_with_what_they_hold() {
         .collect();
 
     let both = robot(&[], &[("left", "left_hand"), ("right", "right_hand")]);
-    let session = Session::new(&both, Kind::PLANE, 400);
+    let session = Session::new(&both, SessionKind::PLANE, 400);
     check_figures("two arms on planes", &session);
     let data = data_of(&session.page());
     assert_eq!(ons(&data, "joints"), arms);
@@ -97,7 +97,7 @@ fn both_arms_are_drawn_with_what_they_hold() {
     assert!([0, 1].iter().all(|target| rows.contains(&Value::from(*target))));
 
     let hand = robot(&[("wire", "left_hand")], &[("ball", "right_hand")]);
-    let session = Session::new(&hand, Kind::DISTANCE, 400);
+    let session = Session::new(&hand, SessionKind::DISTANCE, 400);
     let page = session.page();
     let data = data_of(&page);
     assert_eq!(ons(&data, "joints"), arms);

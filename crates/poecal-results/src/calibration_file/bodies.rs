@@ -66,7 +66,7 @@ pub enum MeasuredEntry {
 impl TargetEntry {
     /// The quantities that were measured of it.
     #[must_use]
-    pub fn measured(&self) -> MeasuredEntry {
+    pub fn measured_entry(&self) -> MeasuredEntry {
         let by_quaternion =
             if self.quaternion_xyzw.is_some() { MeasuredEntry::Pose } else { MeasuredEntry::Position };
         self.measured.unwrap_or(by_quaternion)

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use poecal_calibrate::{Calibration, Displacements, Spread, Workspace, workspace};
+use poecal_calibrate::{Calibration, Displacements, ValueSpread, Workspace, workspace};
 use poecal_model::robot::JointKind;
 use poecal_numerics::unit::Unit;
 
@@ -80,8 +80,8 @@ pub struct ReadingChangeEntry {
 }
 
 impl SpreadEntry {
-    fn shown(unit: Unit, found: &Spread) -> Self {
-        SpreadEntry { median: unit.shown(found.median), max: unit.shown(found.largest) }
+    fn in_shown_unit(unit: Unit, found: &ValueSpread) -> Self {
+        SpreadEntry { median: unit.in_shown_unit(found.median), max: unit.in_shown_unit(found.largest) }
     }
 }
 
@@ -89,19 +89,19 @@ impl DisplacementEntry {
     fn from_displacements(found: &Displacements) -> Self {
         DisplacementEntry {
             configurations: found.configurations,
-            position_mm: SpreadEntry::shown(Unit::Metre, &found.position_m),
-            rotation_deg: SpreadEntry::shown(Unit::Radian, &found.rotation_rad),
+            position_mm: SpreadEntry::in_shown_unit(Unit::Metre, &found.position_m),
+            rotation_deg: SpreadEntry::in_shown_unit(Unit::Radian, &found.rotation_rad),
         }
     }
 }
 
 impl ReadingChangeEntry {
-    fn from_spread((name, kind, spread): &(String, JointKind, Spread)) -> Self {
+    fn from_spread((name, kind, spread): &(String, JointKind, ValueSpread)) -> Self {
         let unit = if *kind == JointKind::Revolute { Unit::Radian } else { Unit::Metre };
         ReadingChangeEntry {
             reading: name.clone(),
             unit: unit.symbol().to_owned(),
-            change: SpreadEntry::shown(unit, spread),
+            change: SpreadEntry::in_shown_unit(unit, spread),
         }
     }
 }

@@ -11,7 +11,7 @@ const SHOWS: f64 = 0.17;
 
 /// Counts of the controller of a calibrated robot, as far as they are known.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Counted {
+pub struct ControllerCounts {
     /// Mapping from the controller's counts to the model's readings; `None` if they are equal.
     pub controller: Option<Controller>,
     /// True if neither the mapping nor the rows determine from where the third axis counts.
@@ -23,14 +23,14 @@ impl CalibrationFile {
     ///
     /// # Errors
     /// As [`Controller::with_third_axis`].
-    pub fn counted(&self, robot: &Robot, stated: Option<ThirdAxis>) -> Result<Counted> {
+    pub fn controller_counts(&self, robot: &Robot, stated: Option<ThirdAxis>) -> Result<ControllerCounts> {
         if let Some(stated) = stated {
-            let kept = self.controller.clone().unwrap_or_else(|| Controller::plain(robot));
+            let kept = self.controller.clone().unwrap_or_else(|| Controller::from_robot(robot));
             let controller = Some(kept.with_third_axis(robot, stated)?);
-            return Ok(Counted { controller, is_third_axis_open: false });
+            return Ok(ControllerCounts { controller, is_third_axis_open: false });
         }
         let controller = self.controller.clone();
-        Ok(Counted { is_third_axis_open: self.is_third_axis_open(robot), controller })
+        Ok(ControllerCounts { is_third_axis_open: self.is_third_axis_open(robot), controller })
     }
 
     fn is_third_axis_open(&self, robot: &Robot) -> bool {

@@ -6,10 +6,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyEntry, MassEntry, MeasuredEntry, TermName};
-use super::corrected::GravityEntry;
-use super::measured;
+use super::corrected_model::GravityEntry;
+use super::measured_noise;
 use poecal_calibrate::{CalibratedStation, DeviceFrameKnowledge, ModelAccuracy};
-use poecal_model::measurement::{Measured, Noise};
+use poecal_model::measurement::{MeasuredQuantities, Noise};
 use poecal_model::robot::{FactorReading, JointKind, Reading, Robot, Term};
 
 /// The calibrated robot's frames.
@@ -99,8 +99,8 @@ pub struct StationEntry {
     pub base_from_device: PoseEntry,
     /// Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sigma: Option<Measured<f64>>,
-    /// Kind, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it), pair (of
+    pub sigma: Option<MeasuredQuantities<f64>>,
+    /// SessionKind, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it), pair (of
     /// configurations, without a meaningful pose).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
@@ -175,12 +175,16 @@ impl RobotEntry {
 
 impl StationEntry {
     /// Entries of a calibration's stations; empty for a single one without a name.
-    pub(crate) fn all_from_stations(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
+    pub(crate) fn all_from_stations(
+        stations: &[CalibratedStation],
+        noise: Noise,
+        errors: &ModelAccuracy,
+    ) -> Vec<Self> {
         let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
         let entry = |it: &CalibratedStation| StationEntry {
             instrument: it.name.clone(),
             base_from_device: (&it.base_from_device).into(),
-            sigma: (it.noise != noise).then(|| measured(errors, it.noise)),
+            sigma: (it.noise != noise).then(|| measured_noise(errors, it.noise)),
             kind: (it.kind != "instrument").then(|| it.kind.to_owned()),
             radius_mm: it.radius_m.map(|radius| 1e3 * radius),
             zero_mm: (it.range.zero_m != 0.0).then_some(1e3 * it.range.zero_m),

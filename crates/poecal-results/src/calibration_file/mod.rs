@@ -1,52 +1,52 @@
 //! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
-mod alike;
 mod bodies;
 mod changes;
 mod clocks;
+mod common_errors;
 mod compensation;
 mod controller;
-mod corrected;
-mod fitted;
+mod corrected_model;
+mod fit_uncertainty;
 mod frames;
 mod gain;
-mod judging;
-mod known;
+mod judging_data;
 mod link;
 mod original;
 mod outliers;
 mod own_rows;
 mod pictures;
-mod recalibrated;
+mod prediction_uncertainty;
+mod recalibration;
 mod refusal;
 mod repeatability;
 mod schema;
 mod stages;
-mod taught;
+mod taught_robot;
 mod trust;
 mod validation;
 
-pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use clocks::ClockEntry;
+pub use common_errors::SuspectedConfigurationEntry;
 pub use compensation::{
     CompensationEntry, DisplacementEntry, ReadingChangeEntry, SpreadEntry, WorkspaceCellEntry,
 };
-pub use controller::Counted;
-pub use corrected::{
+pub use controller::ControllerCounts;
+pub use corrected_model::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
 pub use frames::*;
 pub use original::OriginalUrdf;
-pub use outliers::{BySet, OutlierEntry, OutlierSet, RobustEntry};
+pub use outliers::{OutlierEntry, OutlierSet, OutliersBySet, RobustEntry};
 pub use pictures::{CommonEntry, PicturesEntry};
 pub use poecal_model::camera::{BoardEntry, CameraEntry, PointEntry};
-pub use recalibrated::{JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart};
+pub use recalibration::{JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub(crate) use stages::only_target;
-pub use taught::TaughtRobot;
+pub use taught_robot::TaughtRobot;
 pub use trust::*;
 
 use std::collections::BTreeMap;
@@ -58,8 +58,8 @@ use poecal_arm::lie::{Pose, Screw, Twist};
 use poecal_calibrate::{Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use poecal_fit::forensics::Diagnosis;
 use poecal_fit::parameters::Block;
-use poecal_model::measurement::{Dataset, Measured, Noise, Quantity};
-use poecal_model::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
+use poecal_model::measurement::{Dataset, MeasuredQuantities, Noise, Quantity};
+use poecal_model::robot::{Joint, JointKind, JointLimits, JointTerm, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::{json_text, source_text};
 pub use refusal::SCHEMA;
@@ -104,7 +104,7 @@ impl CalibrationFile {
             suspicions: calibration.suspicions.clone(),
             recalibrated: Vec::new(),
             noise: NoiseEntry {
-                sigma: measured(measured_kinds, calibration.noise),
+                sigma: measured_noise(measured_kinds, calibration.noise),
                 source: calibration.noise_source,
             },
             robot: RobotEntry::new(robot, &calibration.nominal),
@@ -114,14 +114,21 @@ impl CalibrationFile {
                 known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),
             },
-            stations: StationEntry::all_from_stations(&calibration.stations, calibration.noise, measured_kinds),
+            stations: StationEntry::all_from_stations(
+                &calibration.stations,
+                calibration.noise,
+                measured_kinds,
+            ),
             clocks: ClockEntry::all_from_calibration(calibration, data),
             tool: (&robot.last_joint_from_tip()).into(),
             move_tip: calibration.targets.iter().any(|it| it.name.is_none()),
             targets: bodies::targets(robot, &calibration.targets),
             instruments: InstrumentEntry::all_from_mounts(robot, &robot.instruments),
             compensation: CompensationEntry::from_calibration(calibration).map(Box::new),
-            corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::from_correction(it, data))),
+            corrected: calibration
+                .correction
+                .as_ref()
+                .map(|it| Box::new(CorrectedEntry::from_correction(it, data))),
         }
     }
 
@@ -181,8 +188,8 @@ impl CalibrationFile {
 }
 
 /// Numbers in the unit of files from those in metres or radians.
-fn shown(mut si: impl FnMut(Quantity) -> Option<f64>) -> Measured<f64> {
-    Measured::from_fn(|quantity| si(quantity).map(|number| quantity.unit().shown(number)))
+fn in_file_units(mut si: impl FnMut(Quantity) -> Option<f64>) -> MeasuredQuantities<f64> {
+    MeasuredQuantities::from_fn(|quantity| si(quantity).map(|number| quantity.unit().in_shown_unit(number)))
 }
 
 /// An error of a file that holds no valid robot, as a result.
@@ -261,8 +268,8 @@ impl BlocksEntry {
 }
 
 /// Noise of the quantities that the fitted rows measured, millimetres or degrees.
-fn measured(errors: &ModelAccuracy, noise: Noise) -> Measured<f64> {
-    errors.map(|quantity, _| quantity.unit().shown(noise[quantity]))
+fn measured_noise(errors: &ModelAccuracy, noise: Noise) -> MeasuredQuantities<f64> {
+    errors.map(|quantity, _| quantity.unit().in_shown_unit(noise[quantity]))
 }
 
 impl OffsetEntry {
@@ -322,7 +329,7 @@ impl JointEntry {
         }
         Ok(Joint {
             frame: self.base_from_joint.pose()?,
-            limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
+            limits: self.limits.map(|[lower, upper]| JointLimits { lower, upper }),
             reading: self.reading.clone(),
             ..Joint::with_screw(&self.name, kind, screw)
         })

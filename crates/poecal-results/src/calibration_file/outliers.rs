@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CalibrationFile;
-use super::shown;
+use super::in_file_units;
 use poecal_calibrate::{Calibration, Loss, RowError, SetAccuracy, row_influence};
-use poecal_model::measurement::{Dataset, Measured};
+use poecal_model::measurement::{Dataset, MeasuredQuantities};
 
 /// Most suspected rows in a file; `robust` has their number.
 const LISTED: usize = 1000;
@@ -20,14 +20,14 @@ pub struct RobustEntry {
     /// Loss of a robust fit; null: least squares.
     pub loss: Option<Loss>,
     /// Numbers of suspected rows.
-    pub suspected: BySet<usize>,
+    pub suspected: OutliersBySet<usize>,
     /// `accuracy` without suspected rows; null for a set that has none.
-    pub without_suspected: BySet<Option<SetAccuracy>>,
+    pub without_suspected: OutliersBySet<Option<SetAccuracy>>,
 }
 
 /// A value for the training rows and one for the held-out rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct BySet<T> {
+pub struct OutliersBySet<T> {
     /// Value of the training rows.
     pub training: T,
     /// Value of the held-out rows.
@@ -45,7 +45,7 @@ pub struct OutlierEntry {
     pub set: OutlierSet,
     /// Residual of each measured quantity against the calibrated model's prediction, millimetres or degrees: distance of positions, angle of
     /// orientations, and so on.
-    pub residual: Measured<f64>,
+    pub residual: MeasuredQuantities<f64>,
     /// Studentised residual: length over its own standard deviation.
     pub studentized: f64,
     /// Weight in the fit, 0 to 1; for a held-out row the weight that it would have had.
@@ -69,11 +69,11 @@ impl RobustEntry {
         let suspected = |rows: &[u32]| rows.len() - robustness.rest(rows).len();
         RobustEntry {
             loss: robustness.loss,
-            suspected: BySet {
+            suspected: OutliersBySet {
                 training: suspected(&calibration.fit_rows),
                 held_out: suspected(&calibration.held_out_rows),
             },
-            without_suspected: BySet {
+            without_suspected: OutliersBySet {
                 training: robustness.training_rest,
                 held_out: robustness.held_out_rest,
             },
@@ -111,7 +111,7 @@ impl OutlierEntry {
         rows.sort_by(|(a, first), (b, second)| second.total_cmp(first).then(a.cmp(b)));
         rows.truncate(LISTED);
         let numbers: Vec<u32> = rows.iter().map(|(row, _)| *row).collect();
-        let packed = calibration.packed(data);
+        let packed = calibration.packed_values(data);
         let errors = calibration.session(data, &packed).errors(&numbers, &calibration.models.calibrated);
         let entry = |((row, studentized), error): (&(u32, f64), &RowError)| {
             let source = data.observations[*row as usize].source;
@@ -121,7 +121,7 @@ impl OutlierEntry {
                 file: file.map_or_else(String::new, |path| path.display().to_string()),
                 row: source.line,
                 set: if held_out { OutlierSet::HeldOut } else { OutlierSet::Fit },
-                residual: shown(|quantity| error.length(quantity)),
+                residual: in_file_units(|quantity| error.length(quantity)),
                 studentized: *studentized,
                 weight: robustness.rows.get(*row as usize).map_or(1.0, |judged| judged.weight),
             }

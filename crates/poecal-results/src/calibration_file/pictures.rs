@@ -46,11 +46,11 @@ pub struct CommonEntry {
     /// Point about which it turns.
     pub about: Centre,
     /// Ratio by which the corners move the pose of the board more than their own noise does, for a picture of another lens or board; 1 if absent.
-    #[serde(default = "once", skip_serializing_if = "is_once")]
+    #[serde(default = "default_factor", skip_serializing_if = "is_once")]
     pub corners: f64,
 }
 
-fn once() -> f64 {
+fn default_factor() -> f64 {
     1.0
 }
 
@@ -92,7 +92,7 @@ impl PicturesEntry {
     ///
     /// # Errors
     /// [`ErrorKind::Measurement`](poecal_numerics::error::ErrorKind::Measurement) if a camera is invalid.
-    pub fn complete(&self, options: &mut ReadOptions) -> Result<()> {
+    pub fn complete_options(&self, options: &mut ReadOptions) -> Result<()> {
         if options.cameras.is_empty() {
             options.cameras = self.cameras.iter().map(CameraEntry::camera).collect::<Result<_>>()?;
         }

@@ -24,7 +24,7 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         // The parser counts bytes up to the unexpected one.
         let before = text.split('\n').nth(line - 1).unwrap_or_default().char_indices();
         let column = before.take_while(|(at, _)| *at < error.column()).count().max(1);
-        ErrorKind::Syntax.error(message).at(path, line, column)
+        ErrorKind::Syntax.error(message).at_position(path, line, column)
     };
     if let Some(model) = looks_like::model(text) {
         let message = format!(
@@ -41,7 +41,7 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
             (Some(SCHEMA), Some(error)) => return syntax(&error),
             (Some(other), _) => {
                 let again = sources(text)
-                    .again()
+                    .rerun_command()
                     .map_or_else(|| "calibrate again".to_owned(), |it| format!("calibrate again: `{it}`"));
                 format!("found schema `{other}`, expected `{SCHEMA}`, that of this version: {again}")
             }
@@ -63,7 +63,7 @@ struct Sources {
 
 impl Sources {
     /// The command that repeats the calibration from the inputs that the file lists.
-    fn again(self) -> Option<String> {
+    fn rerun_command(self) -> Option<String> {
         let Sources { command, model, measurements } = self;
         command.or_else(|| {
             let words = std::iter::once(model?).chain(measurements);
@@ -75,18 +75,18 @@ impl Sources {
 /// The key `schema` of a JSON text; nothing else of the text is stored.
 pub(crate) fn schema_of(text: &[u8]) -> Option<String> {
     #[derive(Deserialize)]
-    struct Head {
+    struct SchemaHead {
         schema: Option<String>,
     }
-    serde_json::from_slice::<Head>(text).ok()?.schema
+    serde_json::from_slice::<SchemaHead>(text).ok()?.schema
 }
 
 /// The inputs that a calibration of any version lists.
 fn sources(text: &str) -> Sources {
     #[derive(Default, Deserialize)]
-    struct Head {
+    struct SourcesHead {
         #[serde(default)]
         inputs: Sources,
     }
-    serde_json::from_str::<Head>(text).unwrap_or_default().inputs
+    serde_json::from_str::<SourcesHead>(text).unwrap_or_default().inputs
 }

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::shown;
+use super::in_file_units;
 use poecal_calibrate::{Calibration, RepeatedPose, repeatability};
-use poecal_model::measurement::{Dataset, Measured, Quantity};
+use poecal_model::measurement::{Dataset, MeasuredQuantities, Quantity};
 
 /// Most poses in a file.
 const LISTED: usize = 100;
@@ -21,7 +21,7 @@ pub struct RepeatabilityEntry {
     #[serde(flatten)]
     pub mean: PoseRepeatability,
     /// The largest repeatability.
-    pub worst_repeatability: Measured<f64>,
+    pub worst_repeatability: MeasuredQuantities<f64>,
     /// The poses, those with most rows first, at most 100.
     pub listed: Vec<RepeatedPoseEntry>,
 }
@@ -46,18 +46,18 @@ pub struct PoseRepeatability {
     /// Distance from the prediction of each model to the mean measured position.
     pub accuracy: PoseAccuracy,
     /// Repeatability: mean distance of measured positions from their mean, plus three standard deviations.
-    pub repeatability: Measured<f64>,
+    pub repeatability: MeasuredQuantities<f64>,
 }
 
 /// Accuracy of each model in a pose, millimetres or degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PoseAccuracy {
     /// Accuracy of the nominal model.
-    pub nominal: Measured<f64>,
+    pub nominal: MeasuredQuantities<f64>,
     /// Accuracy of the registered model.
-    pub registered: Measured<f64>,
+    pub registered: MeasuredQuantities<f64>,
     /// Accuracy of the calibrated model.
-    pub calibrated: Measured<f64>,
+    pub calibrated: MeasuredQuantities<f64>,
 }
 
 impl PoseRepeatability {
@@ -86,9 +86,9 @@ impl RepeatabilityEntry {
             Some(own.map(of).collect()).filter(|numbers: &Vec<f64>| !numbers.is_empty())
         };
         let mean = |of: fn(&RepeatedPose) -> f64| {
-            Measured::from_fn(|quantity| {
+            MeasuredQuantities::from_fn(|quantity| {
                 let numbers = each(quantity, of)?;
-                Some(quantity.unit().shown(1.0) * numbers.iter().sum::<f64>() / numbers.len() as f64)
+                Some(quantity.unit().in_shown_unit(1.0) * numbers.iter().sum::<f64>() / numbers.len() as f64)
             })
         };
         let worst =
@@ -104,7 +104,7 @@ impl RepeatabilityEntry {
                 },
                 repeatability: mean(|pose| pose.repeatability),
             },
-            worst_repeatability: shown(worst),
+            worst_repeatability: in_file_units(worst),
             listed: poses.iter().take(LISTED).map(|pose| RepeatedPoseEntry::from_pose(pose, data)).collect(),
         })
     }
@@ -123,11 +123,11 @@ impl RepeatedPoseEntry {
             rows: pose.rows.len(),
             own: PoseRepeatability {
                 accuracy: PoseAccuracy {
-                    nominal: shown(|quantity| own(quantity, nominal)),
-                    registered: shown(|quantity| own(quantity, registered)),
-                    calibrated: shown(|quantity| own(quantity, calibrated)),
+                    nominal: in_file_units(|quantity| own(quantity, nominal)),
+                    registered: in_file_units(|quantity| own(quantity, registered)),
+                    calibrated: in_file_units(|quantity| own(quantity, calibrated)),
                 },
-                repeatability: shown(|quantity| own(quantity, pose.repeatability)),
+                repeatability: in_file_units(|quantity| own(quantity, pose.repeatability)),
             },
         }
     }

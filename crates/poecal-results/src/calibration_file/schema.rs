@@ -6,14 +6,14 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::alike::SuspectedConfigurationEntry;
 use super::bodies::InstrumentEntry;
 use super::changes::CommonDirectionEntry;
+use super::common_errors::SuspectedConfigurationEntry;
 use super::compensation::CompensationEntry;
-use super::corrected::CorrectedEntry;
+use super::corrected_model::CorrectedEntry;
 use super::frames::{FrameEntry, JointEntry, PoseEntry, RobotEntry, StationEntry, TargetEntry};
 use super::original::OriginalUrdf;
-use super::recalibrated::RecalibratedEntry;
+use super::recalibration::RecalibratedEntry;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{ClockEntry, OutlierEntry, PicturesEntry, RepeatabilityEntry, RobustEntry};
 use crate::record::Record;
@@ -21,7 +21,7 @@ use poecal_calibrate::{Acceptance, Accuracy, Event, FormulationWords, NoiseSourc
 use poecal_fit::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use poecal_fit::forensics::DiagnosisKind;
 use poecal_import::{InputEntry, JoinEntry, MeasurementFile};
-use poecal_model::measurement::Measured;
+use poecal_model::measurement::MeasuredQuantities;
 use poecal_model::robot::Controller;
 use poecal_numerics::error::Result;
 use poecal_numerics::solve::Termination;
@@ -301,7 +301,7 @@ pub struct IdentifiabilityEntry {
 impl IdentifiabilityEntry {
     /// Number of unknowns that are determined weakly.
     #[must_use]
-    pub fn weakly(&self) -> usize {
+    pub fn weakly_determined(&self) -> usize {
         self.weak.iter().map(|direction| direction.directions).sum()
     }
 
@@ -324,7 +324,7 @@ impl IdentifiabilityEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoiseEntry {
     /// Standard deviation of each component of each measured quantity, millimetres or degrees.
-    pub sigma: Measured<f64>,
+    pub sigma: MeasuredQuantities<f64>,
     /// Source of the noise.
     pub source: NoiseSource,
 }

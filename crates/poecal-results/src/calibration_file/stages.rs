@@ -29,7 +29,7 @@ impl CalibrationFile {
         let stations: Vec<&str> = self.stations.iter().filter_map(|it| it.instrument.as_deref()).collect();
         let targets: Vec<&str> = self.targets.keys().map(String::as_str).collect();
         let mut found = data.clone();
-        let only = single(&stations);
+        let only = single_name(&stations);
         if let (true, Some(only)) = (found.stations.iter().all(Option::is_none), only) {
             found.stations = vec![Some(only.to_owned()); found.station_count()];
         }
@@ -46,7 +46,7 @@ impl CalibrationFile {
     }
 
     /// The last state of the target of rows without a name. `None` if that is the tip, or if rows must name theirs.
-    pub(crate) fn unnamed(&self) -> Option<&str> {
+    pub(crate) fn unnamed_target(&self) -> Option<&str> {
         let targets: Vec<&str> = self.targets.keys().map(String::as_str).collect();
         state(&targets, MEASURED, usize::MAX)
     }
@@ -54,7 +54,7 @@ impl CalibrationFile {
     /// The last state of the only device; `None` for several devices.
     pub(crate) fn last_station(&self) -> Option<&StationEntry> {
         let names: Vec<&str> = self.stations.iter().filter_map(|it| it.instrument.as_deref()).collect();
-        let last = state(&names, single(&names)?, usize::MAX)?;
+        let last = state(&names, single_name(&names)?, usize::MAX)?;
         self.stations.iter().find(|it| it.instrument.as_deref() == Some(last))
     }
 }
@@ -67,7 +67,7 @@ fn state<'n>(known: &[&'n str], name: &str, stage: usize) -> Option<&'n str> {
 }
 
 /// The name whose states all names are.
-fn single<'n>(names: &[&'n str]) -> Option<&'n str> {
+fn single_name<'n>(names: &[&'n str]) -> Option<&'n str> {
     let (first, _) = family(names.first()?);
     (names.len() > 1 && names.iter().all(|it| family(it).0 == first)).then_some(first)
 }
@@ -76,6 +76,6 @@ fn single<'n>(names: &[&'n str]) -> Option<&'n str> {
 pub(crate) fn only_target<'n>(names: &[&'n str]) -> Option<&'n str> {
     match names {
         [only] => Some(only),
-        several => state(several, single(several)?, usize::MAX),
+        several => state(several, single_name(several)?, usize::MAX),
     }
 }

@@ -5,11 +5,13 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CorrelationsEntry, JointChangeEntry, PoseEntry, shown};
-use poecal_calibrate::{CoverageCheck, Expected, JointCorrection, PartCoverage, RangePart, Trust};
+use super::{CorrelationsEntry, JointChangeEntry, PoseEntry, in_file_units};
+use poecal_calibrate::{
+    CoverageCheck, ExpectedPositionErrors, JointCorrection, QuantityCoverage, RangePart, Trust,
+};
 use poecal_fit::analysis::JointCoverage;
-use poecal_fit::uncertainty::{Attribution, Bootstrap, LeftOut};
-use poecal_model::measurement::{Measured, Quantity};
+use poecal_fit::uncertainty::{Attribution, Bootstrap, FoldErrors};
+use poecal_model::measurement::{MeasuredQuantities, Quantity};
 use poecal_model::robot::Robot;
 
 /// Errors of the rows of a fold or block, predicted by a fit of the others.
@@ -20,7 +22,7 @@ pub struct LeftOutEntry {
     /// Number of rows.
     pub rows: usize,
     /// Root mean square error of each measured quantity, millimetres or degrees.
-    pub rms: Measured<f64>,
+    pub rms: MeasuredQuantities<f64>,
 }
 
 /// Cross-validation on the fitted rows.
@@ -67,14 +69,14 @@ pub struct KeptEntry {
 }
 
 /// Errors of held-out rows compared with their predicted uncertainty: of each quantity that was measured, millimetres or degrees.
-pub type HeldOutEntry = Measured<KeptEntry>;
+pub type HeldOutEntry = MeasuredQuantities<KeptEntry>;
 
 pub(crate) fn held_out(kept: &CoverageCheck) -> HeldOutEntry {
-    let entry = |part: PartCoverage| KeptEntry {
+    let entry = |part: QuantityCoverage| KeptEntry {
         expected_rms: part.expected_rms,
         inside_bound95: part.inside_bound95,
     };
-    Measured::from_fn(|quantity| kept.parts.get(quantity).map(entry))
+    MeasuredQuantities::from_fn(|quantity| kept.parts.get(quantity).map(entry))
 }
 
 /// A part of a joint's range with the expected error there.
@@ -144,9 +146,9 @@ pub struct UncertaintyEntry {
     pub extrapolation: Option<f64>,
     /// Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and other measured quantities.
     #[serde(rename = "model_error")]
-    pub discrepancy: Measured<f64>,
+    pub discrepancy: MeasuredQuantities<f64>,
     /// Measurement noise in the residuals: standard deviation of each component, millimetres or degrees.
-    pub noise: Measured<f64>,
+    pub noise: MeasuredQuantities<f64>,
     /// Attribution of the residuals of each quantity to the robot or to the instrument.
     #[schemars(with = "BTreeMap<String, Attribution>")]
     pub residuals: BTreeMap<Quantity, Attribution>,
@@ -199,11 +201,11 @@ pub(crate) fn by_quantity<T>(value: &dyn Fn(Quantity) -> Option<T>) -> BTreeMap<
 }
 
 impl LeftOutEntry {
-    fn from_left_out(found: &LeftOut) -> Self {
+    fn from_left_out(found: &FoldErrors) -> Self {
         LeftOutEntry {
             left_out: found.name.clone(),
             rows: found.rows,
-            rms: shown(|quantity| found.rms.get(quantity)),
+            rms: in_file_units(|quantity| found.rms.get(quantity)),
         }
     }
 }
@@ -216,7 +218,7 @@ impl CrossValidationEntry {
             outside: found.outside.as_ref().map(|it| LeftOutEntry {
                 left_out: "beyond the range of the others".to_owned(),
                 rows: it.rows,
-                rms: shown(|quantity| it.rms.get(quantity)),
+                rms: in_file_units(|quantity| it.rms.get(quantity)),
             }),
             blocked: found.blocked.iter().map(LeftOutEntry::from_left_out).collect(),
         })
@@ -224,7 +226,7 @@ impl CrossValidationEntry {
 }
 
 impl ExpectedEntry {
-    pub(crate) fn from_expected(expected: &Expected) -> Self {
+    pub(crate) fn from_expected(expected: &ExpectedPositionErrors) -> Self {
         ExpectedEntry {
             sigma_position_mm: expected.sigma_m * 1e3,
             bound95_position_mm: expected.bound_m * 1e3,

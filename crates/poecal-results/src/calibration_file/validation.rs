@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use super::CalibrationFile;
 use poecal_arm::lie::rotation;
 use poecal_calibrate::{
-    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, Improvement, JudgedModel, Judgement,
-    MovedDevice, PartCoverage, PredictedUncertainty, Refitted, Subject, accepted_by, improvement, judge,
+    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, Improvement, JudgedCalibration, JudgedModel,
+    Judgement, MovedDevice, PredictedUncertainty, QuantityCoverage, RefittedPart, accepted_by, improvement,
+    judge,
 };
 use poecal_fit::start::faces_on_known_planes;
-use poecal_fit::state::Range;
+use poecal_fit::state::RangeModel;
 use poecal_fit::uncertainty::Uncertainty;
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::Body;
@@ -36,10 +37,10 @@ impl CalibrationFile {
     /// too few for the refit;
     /// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if the file holds no valid calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
-        let judgement = self.judged(data, refit_frame, refit_tool)?;
-        let Some(file) = self.corrected() else { return Ok(judgement) };
+        let judgement = self.judge_with_refits(data, refit_frame, refit_tool)?;
+        let Some(file) = self.corrected_file() else { return Ok(judgement) };
         let Judgement { calibrated: errors, promised, in_sampled_range, rows, .. } =
-            file.judged(data, refit_frame, refit_tool)?;
+            file.judge_with_refits(data, refit_frame, refit_tool)?;
         let corrected = Some(JudgedModel { errors, promised, in_sampled_range });
         Ok(Judgement { corrected, rows, ..judgement })
     }
@@ -54,7 +55,7 @@ impl CalibrationFile {
         let found = self.judge(data, false, refit_tool)?;
         // Too few rows for a frame do not show a move.
         let Ok(again) = self.judge(data, true, refit_tool) else { return Ok(found) };
-        let [before, after] = [&found, &again].map(|it| it.delivered().errors.leading());
+        let [before, after] = [&found, &again].map(|it| it.delivered_model().errors.leading_value());
         let (Some((_, before)), Some((_, after))) = (before, after) else { return Ok(found) };
         let numbers: usize = data.observations.iter().map(|row| row.measurement.dim()).sum();
         let frames = 6.0 * data.station_count() as f64;
@@ -62,7 +63,7 @@ impl CalibrationFile {
         let (square, less) = (before.rms.powi(2), after.rms.powi(2));
         let is_plain = freedom > 0.0 && before.rms > ROUNDING;
         let ratio = freedom / frames * (square - less) / less.max(f64::MIN_POSITIVE);
-        let holds = again.delivered().promised.is_none_or(|it| it.least_inside() >= BROKEN);
+        let holds = again.delivered_model().promised.is_none_or(|it| it.least_inside() >= BROKEN);
         let is_certain = is_plain && holds && ratio >= f_quantile(CHANCE, frames, freedom);
         if !is_certain || after.rms > MUCH * before.rms {
             return Ok(found);
@@ -89,7 +90,7 @@ impl CalibrationFile {
         refit_frame: bool,
         refit_tool: bool,
     ) -> Result<Option<Improvement>> {
-        let corrected = self.corrected();
+        let corrected = self.corrected_file();
         let file = corrected.as_ref().unwrap_or(self);
         file.with_subject(data, refit_frame, refit_tool, |subject, data| Ok(improvement(subject, data)))
     }
@@ -116,7 +117,7 @@ impl CalibrationFile {
                  rows held out when it was made"
             ));
         }
-        let corrected = if limits.model == AcceptedModel::Corrected { self.corrected() } else { None };
+        let corrected = if limits.model == AcceptedModel::Corrected { self.corrected_file() } else { None };
         let model = if corrected.is_some() { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
         let file = corrected.as_ref().unwrap_or(self);
         file.with_subject(data, refit_frame, refit_tool, |subject, data| {
@@ -124,7 +125,7 @@ impl CalibrationFile {
         })
     }
 
-    fn judged(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
+    fn judge_with_refits(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         self.with_subject(data, refit_frame, refit_tool, judge)
     }
 
@@ -134,7 +135,7 @@ impl CalibrationFile {
         data: &Dataset,
         refit_frame: bool,
         refit_tool: bool,
-        to: impl FnOnce(&Subject<'_>, &Dataset) -> Result<T>,
+        to: impl FnOnce(&JudgedCalibration<'_>, &Dataset) -> Result<T>,
     ) -> Result<T> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
         let shared = self.pictures.as_ref().map(|known| data.with_common(known.common_error()));
@@ -149,14 +150,14 @@ impl CalibrationFile {
         let range = |name: &Option<String>| {
             let own = self.stations.iter().find(|it| it.instrument == *name);
             let zero_m = own.and_then(|it| it.zero_mm).map_or(0.0, |zero| 1e-3 * zero);
-            Range { zero_m, scale: own.and_then(|it| it.scale).unwrap_or(0.0) }
+            RangeModel { zero_m, scale: own.and_then(|it| it.scale).unwrap_or(0.0) }
         };
-        let ranges: Vec<Range> = data.stations.iter().map(range).collect();
+        let ranges: Vec<RangeModel> = data.stations.iter().map(range).collect();
         let turned = faces_on_known_planes(data, &calibrated, &devices);
         let data = &*turned;
         let noise = self.noise()?;
         // Refitted targets are not those of the calibration.
-        let unnamed = self.unnamed();
+        let unnamed = self.unnamed_target();
         let known = data.targets.iter().map(|name| name.as_deref().or(unnamed)).filter(|_| !refit_tool);
         let names: Vec<Option<&str>> = known.collect();
         let found = if self.uncertainty.is_some() { Some(self.uncertainty_as_seen(&names)?) } else { None };
@@ -165,7 +166,7 @@ impl CalibrationFile {
             targets,
             coverage: &self.coverage,
         });
-        let subject = Subject {
+        let subject = JudgedCalibration {
             calibrated: &calibrated,
             nominal: &nominal,
             base_from_device: first,
@@ -195,9 +196,9 @@ impl CalibrationFile {
         if let Some(moved) = judgement.moved_device.as_ref().filter(|it| !it.refitted) {
             return doubt_of_device(judgement, moved);
         }
-        let delivered = judgement.delivered();
+        let delivered = judgement.delivered_model();
         let own = self.own_rms(delivered.model).max(ROUNDING);
-        let (leading, found) = delivered.errors.leading()?;
+        let (leading, found) = delivered.errors.leading_value()?;
         let (rms, unit) = (found.rms, leading.unit().symbol());
         let check = delivered.promised.filter(|_| rms > ROUNDING);
         // If most errors are inside their bounds, single rows are wrong, not the device.
@@ -209,12 +210,12 @@ impl CalibrationFile {
                 found.max
             ));
         }
-        let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
+        let refit_frame = judgement.refitted.contains(&RefittedPart::DeviceFrame);
         let broken = check.filter(|it| it.least_inside() < BROKEN);
         let Some(check) = broken else {
             return (check.is_none() && is_far && !refit_frame).then(|| moved_words(leading, rms, own));
         };
-        let exceeding = exceeding(check);
+        let exceeding = describe_exceeding(check);
         let inside = delivered.in_sampled_range;
         let Some(some) = inside.filter(|some| some.count >= FEW.min(judgement.count)) else {
             let moved =
@@ -243,14 +244,14 @@ impl CalibrationFile {
         Some(format!(
             "{}{place} exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, or orientations \
              are written in another form",
-            self::exceeding(&some.promised)
+            self::describe_exceeding(&some.promised)
         ))
     }
 }
 
 /// Shares of errors beyond their bounds.
-fn exceeding(check: &CoverageCheck) -> String {
-    let share = |part: PartCoverage| 100.0 * (1.0 - part.inside_bound95);
+fn describe_exceeding(check: &CoverageCheck) -> String {
+    let share = |part: QuantityCoverage| 100.0 * (1.0 - part.inside_bound95);
     let words = check
         .parts
         .iter()
@@ -268,7 +269,7 @@ fn moved_words(leading: Quantity, rms: f64, own: f64) -> String {
 
 /// The sentence on a device that was moved since the calibration.
 fn doubt_of_device(judgement: &Judgement, moved: &MovedDevice) -> Option<String> {
-    let (quantity, _) = judgement.delivered().errors.leading()?;
+    let (quantity, _) = judgement.delivered_model().errors.leading_value()?;
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
     Some(format!(
         "the device stands {:.3} mm and {:.4} deg from where the calibration has it: with its frame refitted the {name} error is {:.4} {unit} \

@@ -4,8 +4,8 @@
 //! Offset, tilt and shift of each joint come with base and tool in the best fit (`poecal-model`'s `offsets`), and their covariance from both files
 //! (`spread.rs`). This module has numbers only; `poecal-report` has the words and tables.
 
+mod change_covariance;
 mod chi_square;
-mod spread;
 
 pub use chi_square::ChiSquare;
 
@@ -16,14 +16,14 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use crate::calibration_file::CalibrationFile;
+use change_covariance::ChangeCovariance;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_fit::analysis::within_sampled;
-use poecal_model::offsets::{Changes, End, JointChange, Taught, with_tool_of};
+use poecal_model::offsets::{Changes, EndConstraint, JointChange, TaughtFrames, with_tool_of};
 use poecal_model::robot::{JointKind, Robot};
 use poecal_model::simulate::random_configuration;
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use spread::Spread;
 
 /// Configurations over which tips are compared, and the seed of these.
 const CONFIGURATIONS: usize = 1000;
@@ -70,7 +70,7 @@ pub struct TipDifference {
 
 /// Changes between two calibrations of one robot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Compared {
+pub struct CalibrationComparison {
     /// Each joint.
     pub joints: Vec<ComparedJoint>,
     /// The test of all joints; `None` without the uncertainty of both.
@@ -81,7 +81,7 @@ pub struct Compared {
     pub base_is_free: bool,
 }
 
-impl Compared {
+impl CalibrationComparison {
     /// True if the tip moved by more than the limit; `None` without a limit.
     #[must_use]
     pub fn is_moved(&self) -> Option<bool> {
@@ -91,11 +91,11 @@ impl Compared {
     /// True if the joints changed by more than noise; `None` without the uncertainty of both.
     #[must_use]
     pub fn is_change(&self) -> Option<bool> {
-        self.test.map(|test| test.is_change() || self.changed().next().is_some())
+        self.test.map(|test| test.is_change() || self.changed_joints().next().is_some())
     }
 
     /// The joints that changed by more than noise.
-    pub fn changed(&self) -> impl Iterator<Item = &ComparedJoint> {
+    pub fn changed_joints(&self) -> impl Iterator<Item = &ComparedJoint> {
         self.joints.iter().filter(|joint| joint.test.is_some_and(|test| test.is_change()))
     }
 }
@@ -106,14 +106,18 @@ impl Compared {
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if they are of different robots; [`ErrorKind::Model`] if a file holds no valid robot.
-pub fn compare(first: &CalibrationFile, second: &CalibrationFile, limit_m: Option<f64>) -> Result<Compared> {
+pub fn compare(
+    first: &CalibrationFile,
+    second: &CalibrationFile,
+    limit_m: Option<f64>,
+) -> Result<CalibrationComparison> {
     let (a, b) = (first.robot()?, second.robot()?);
     let is_known = |file: &CalibrationFile| file.frame() == DeviceFrameKnowledge::Base;
     let base_is_free = !(is_known(first) && is_known(second));
-    let base = if base_is_free { End::Free } else { End::Kept };
+    let base = if base_is_free { EndConstraint::Free } else { EndConstraint::Kept };
     let changes = Changes::from_robots(&a, &b, base).map_err(|error| other_robot(&a, &b, error))?;
     check_nominal(&first.nominal_robot()?, &second.nominal_robot()?)?;
-    let spread = Spread::from_changes(&changes, [first, second])?;
+    let spread = ChangeCovariance::from_changes(&changes, [first, second])?;
     let chance = CHANCE / a.joints.len().max(1) as f64;
     let joints = a.joints.iter().zip(&changes.joints).enumerate();
     let joints = joints.map(|(index, (joint, change))| ComparedJoint {
@@ -123,14 +127,14 @@ pub fn compare(first: &CalibrationFile, second: &CalibrationFile, limit_m: Optio
     });
     let joints: Vec<ComparedJoint> = joints.collect();
     let all: Vec<usize> = (0..joints.len()).collect();
-    let corrected = first.corrected().zip(second.corrected());
+    let corrected = first.corrected_file().zip(second.corrected_file());
     let (one, other) = corrected.as_ref().map_or((first, second), |(one, other)| (one, other));
     let expected =
         |file: &CalibrationFile| file.uncertainty.as_ref().map(|it| it.measured.sigma_position_mm / 1e3);
     let expected_m = expected(one).zip(expected(other)).map(|(one, other)| one.hypot(other));
     let sampled = within_sampled(&a, &[&first.coverage, &second.coverage]);
     let tip = tips(&sampled, &one.robot()?, &other.robot()?, base_is_free);
-    Ok(Compared {
+    Ok(CalibrationComparison {
         joints,
         test: spread.as_ref().map(|spread| spread.test(&all, &changes, CHANCE)),
         tip: TipDifference {
@@ -208,8 +212,10 @@ fn tips(sampled: &Robot, a: &Robot, b: &Robot, base_is_free: bool) -> TipDiffere
     let pairs: Vec<(Pose, Pose)> =
         readings.iter().map(|q| (b.forward_kinematics(q), a.forward_kinematics(q))).collect();
     // Points do not show the orientation of a tip: its position alone determines the base and the position of the tool.
-    let (placed, taught) =
-        (Taught::of_places(&pairs, !base_is_free), Taught::from_tips(&pairs, a.arm_m() / 3.0, !base_is_free));
+    let (placed, taught) = (
+        TaughtFrames::of_places(&pairs, !base_is_free),
+        TaughtFrames::from_tips(&pairs, a.arm_m() / 3.0, !base_is_free),
+    );
     let differences = pairs.iter().map(|(b, a)| {
         let turn = rotation::log(&(taught.tip(b).rotation * a.rotation.transpose())).norm();
         ((placed.tip(b).translation - a.translation).norm(), turn)

@@ -3,11 +3,12 @@
 //! One module for each form, from axis frames or DH tables (`poecal-model`'s `forms`), with a variant of [`ExportFormat`]. The text is read back on
 //! 1,000 configurations. `onto.rs` puts the numbers in a URDF that is named instead (`--onto`, `poecal export --onto`).
 
+mod export_check;
 mod mjcf;
 mod names;
 mod numbers;
 mod offsets;
-mod onto;
+mod onto_urdf;
 mod origins;
 mod pal;
 mod screws;
@@ -15,23 +16,23 @@ mod sdf;
 mod tables;
 mod transforms;
 mod usd;
-mod written;
 
 use std::borrow::Cow;
 
-pub use onto::onto;
-pub use written::Exported;
+pub use export_check::ExportedRobot;
+pub use onto_urdf::write_onto;
 
 use super::model::{Model, ModelFormat, convert};
+use export_check::{
+    CONFIGURATIONS, ExportedText, Proof, SAME, export_error, is_same, left_out, read_back,
+    remaining_difference, unreadable_error,
+};
 use origins::Flavour;
 use poecal_formats::proof::Difference;
-use poecal_formats::urdf::Converted;
+use poecal_formats::urdf::ConvertedModel;
 use poecal_model::forms::DhConvention;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
-use written::{
-    CONFIGURATIONS, Proof, SAME, Written, export_error, is_same, left_out, read_back, remaining, unread,
-};
 
 /// Defines the forms by their words.
 macro_rules! formats {
@@ -112,7 +113,7 @@ pub struct ExportOptions {
 /// # Errors
 /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if the form cannot hold the robot, or the text read back
 /// differs by more than 1e-9 m (of a robot of a metre) or rad though the form can carry it.
-pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
+pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<ExportedRobot> {
     let counted = model.sums().map(|it| {
         format!(
             "readings of this form are the model's, which the mapping made of what the controller counts: {}",
@@ -129,8 +130,8 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
             exported.notes.splice(0..0, counted);
             return Ok(exported);
         }
-        ExportFormat::Urdf => return converted(model, robot, ModelFormat::Urdf, notes),
-        ExportFormat::Toml => return converted(model, robot, ModelFormat::Toml, notes),
+        ExportFormat::Urdf => return convert_model(model, robot, ModelFormat::Urdf, notes),
+        ExportFormat::Toml => return convert_model(model, robot, ModelFormat::Toml, notes),
         ExportFormat::Poe => screws::write(robot),
         ExportFormat::Dh => tables::write(robot, DhConvention::Standard),
         ExportFormat::Mdh => tables::write(robot, DhConvention::Modified),
@@ -149,7 +150,7 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
     }
     .map_err(|error| error.in_file(&model.path))?;
     let (remains, must_be_same) = match &written.proof {
-        Proof::Again(again) => (remaining(robot, again), true),
+        Proof::Again(again) => (remaining_difference(robot, again), true),
         Proof::Remains(remains) => (*remains, false),
     };
     if must_be_same && !is_same(robot, &remains) {
@@ -161,7 +162,7 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
     }
     notes.extend(written.notes);
     notes.extend(left_out(robot));
-    Ok(Exported { text: written.text, notes, remains, beside: screws::beside(model)? })
+    Ok(ExportedRobot { text: written.text, notes, remains, beside: screws::describe_extra_terms(model)? })
 }
 
 /// The robot that a form of geometry can hold: without compliant joints and terms of joint values, with offsets in the screws. A note states the
@@ -174,7 +175,7 @@ fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>)
     }
     let mut plain = robot.without_offsets().rigid();
     plain.terms.clear();
-    let lost = remaining(robot, &plain).position_m * 1e3;
+    let lost = remaining_difference(robot, &plain).position_m * 1e3;
     if gives || !robot.without_offsets().terms.is_empty() {
         notes.push(format!(
             "this form has geometry alone: without what the joints do beyond it, the tip is off by up to {lost:.3} mm"
@@ -184,12 +185,17 @@ fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>)
 }
 
 /// A model's own forms.
-fn converted(model: &Model, robot: &Robot, to: ModelFormat, mut said: Vec<String>) -> Result<Exported> {
+fn convert_model(
+    model: &Model,
+    robot: &Robot,
+    to: ModelFormat,
+    mut said: Vec<String>,
+) -> Result<ExportedRobot> {
     let plain = Model { robot: robot.clone(), ..model.clone() };
-    let Converted { text, notes } = convert(&plain, to)?;
+    let ConvertedModel { text, notes } = convert(&plain, to)?;
     said.extend(notes);
     let notes = said;
-    let beside = if robot == &model.robot { None } else { screws::beside(model)? };
+    let beside = if robot == &model.robot { None } else { screws::describe_extra_terms(model)? };
     // `convert` has compared them.
-    Ok(Exported { text, notes, remains: Difference { position_m: 0.0, rotation_rad: 0.0 }, beside })
+    Ok(ExportedRobot { text, notes, remains: Difference { position_m: 0.0, rotation_rad: 0.0 }, beside })
 }

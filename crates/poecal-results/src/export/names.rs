@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use poecal_model::robot::Robot;
 
 /// Names that no other part of the text has, and that no reader reserves.
-pub(crate) struct Names {
+pub(crate) struct ExportNames {
     pub(crate) base: String,
     pub(crate) tip: String,
     pub(crate) joints: Vec<String>,
@@ -15,7 +15,7 @@ pub(crate) struct Names {
     pub(crate) mount: String,
 }
 
-impl Names {
+impl ExportNames {
     /// Names of a robot, changed as little as possible: joints keep theirs if they can.
     pub(crate) fn from_robot(robot: &Robot) -> Self {
         let mut taken = BTreeSet::from(["world".to_owned()]);
@@ -33,7 +33,7 @@ impl Names {
         let (base, tip) = (free(&robot.base_name), free(&robot.tip_name));
         let links = robot.joints.iter().map(|joint| free(&format!("{}_link", joint.name))).collect();
         let mount = free(&format!("{}_fixed", robot.tip_name));
-        Names { base, tip, joints, links, mount }
+        ExportNames { base, tip, joints, links, mount }
     }
 
     /// A note on names that were changed.

@@ -7,20 +7,20 @@ use poecal_arm::Arm;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::{CONFIGURATIONS, Exported, export_error, unread};
+use super::{CONFIGURATIONS, ExportedRobot, export_error, unreadable_error};
 use crate::model::{Model, ModelSource};
 use poecal_arm::lie::rotation;
 use poecal_formats::proof::Difference;
-use poecal_model::robot::{Counting, JointKind, Robot};
+use poecal_model::robot::{ControllerMap, JointKind, Robot};
 use poecal_model::simulate::Configurations;
 use poecal_numerics::error::Result;
-use poecal_storage::numbers::shortest;
+use poecal_storage::numbers::format_shortest;
 
 /// Distance (m) and angle (rad) below which two computations of a pose are the same but for rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// Writes the arms, and reads them back.
-pub(crate) fn write(model: &Model) -> Result<Exported> {
+pub(crate) fn write(model: &Model) -> Result<ExportedRobot> {
     let actual = &model.robot;
     let factors: Vec<f64> = actual.factors.iter().map(|it| it.reference).collect();
     let mut notes = Vec::new();
@@ -31,10 +31,10 @@ pub(crate) fn write(model: &Model) -> Result<Exported> {
     let mut text = header(actual);
     if let Some(controller) = model.sums() {
         let (_, readings) = actual.arm_model(&factors)?;
-        text.push_str(&counted(&controller.counting()?, &readings));
+        text.push_str(&write_functions(&controller.controller_map()?, &readings));
     }
     let nominal = match &model.source {
-        ModelSource::Calibration(file) => Some(file.taught(actual)?.robot),
+        ModelSource::Calibration(file) => Some(file.taught_robot(actual)?.robot),
         ModelSource::Urdf(_) | ModelSource::Toml => None,
     };
     let mut remains = Difference { position_m: 0.0, rotation_rad: 0.0 };
@@ -43,7 +43,7 @@ pub(crate) fn write(model: &Model) -> Result<Exported> {
         let of = if name == "actual" { &factors[..] } else { &[] };
         let (arm, _) = robot.arm_model(of)?;
         array(&mut text, name, &arm.numbers());
-        let found = compared(robot, of, &text, name)?;
+        let found = compare_array(robot, of, &text, name)?;
         remains.position_m = remains.position_m.max(found.position_m);
         remains.rotation_rad = remains.rotation_rad.max(found.rotation_rad);
     }
@@ -55,7 +55,7 @@ pub(crate) fn write(model: &Model) -> Result<Exported> {
         return Err(export_error(message));
     }
     notes.extend(super::left_out(actual));
-    Ok(Exported { text, notes, remains, beside: None })
+    Ok(ExportedRobot { text, notes, remains, beside: None })
 }
 
 fn header(robot: &Robot) -> String {
@@ -75,7 +75,7 @@ fn header(robot: &Robot) -> String {
 }
 
 /// Functions from the controller's counts to the readings of the arms, and back.
-fn counted(counting: &Counting, readings: &[usize]) -> String {
+fn write_functions(counting: &ControllerMap, readings: &[usize]) -> String {
     let function = |name: &str, (from, to): (&str, &str), row: &dyn Fn(usize) -> String| {
         let lines = (0..readings.len()).map(|at| format!("  {to}[{at}] = {};\n", row(at)));
         format!(
@@ -87,7 +87,7 @@ fn counted(counting: &Counting, readings: &[usize]) -> String {
         0.0 => String::new(),
         1.0 => format!(" + {of}"),
         -1.0 => format!(" - {of}"),
-        _ => format!(" + {} * {of}", shortest(factor)),
+        _ => format!(" + {} * {of}", format_shortest(factor)),
     };
     let sum = |matrix: &DMatrix<f64>, row: usize, of: &dyn Fn(usize) -> String| -> String {
         let terms = readings.iter().enumerate().map(|(at, &it)| term(matrix[(readings[row], it)], of(at)));
@@ -96,12 +96,12 @@ fn counted(counting: &Counting, readings: &[usize]) -> String {
     };
     let offset = |at: usize| counting.offsets()[readings[at]];
     let to = |row: usize| {
-        sum(counting.matrix(), row, &|at| format!("counted[{at}]")) + &term(1.0, shortest(offset(row)))
+        sum(counting.matrix(), row, &|at| format!("counted[{at}]")) + &term(1.0, format_shortest(offset(row)))
     };
     let back = |row: usize| {
         sum(counting.inverse(), row, &|at| match offset(at) {
             0.0 => format!("readings[{at}]"),
-            offset => format!("(readings[{at}] - {})", shortest(offset)),
+            offset => format!("(readings[{at}] - {})", format_shortest(offset)),
         })
     };
     let names: Vec<String> = readings.iter().map(|&at| counting.names()[at].replace("*/", "* /")).collect();
@@ -117,20 +117,21 @@ fn array(text: &mut String, name: &str, numbers: &[f64]) {
     let _ = write!(text, "static const double poecal_{name}[{}] = {{", numbers.len());
     for (index, number) in numbers.iter().enumerate() {
         text.push_str(if index % 6 == 0 { "\n  " } else { " " });
-        text.push_str(&shortest(*number));
+        text.push_str(&format_shortest(*number));
         text.push(',');
     }
     text.push_str("\n};\n");
 }
 
 /// Reads an array, and compares its arm with the robot.
-fn compared(robot: &Robot, factors: &[f64], text: &str, name: &str) -> Result<Difference> {
+fn compare_array(robot: &Robot, factors: &[f64], text: &str, name: &str) -> Result<Difference> {
     let body = text.split_once(&format!("poecal_{name}[")).and_then(|(_, rest)| rest.split_once('{'));
     let body = body.and_then(|(_, rest)| rest.split_once('}')).map(|(body, _)| body);
     let numbers = body.unwrap_or_default().split(',').map(str::trim).filter(|it| !it.is_empty());
     let numbers: Option<Vec<f64>> = numbers.map(|it| it.parse().ok()).collect();
     let arm = numbers.and_then(|numbers| Arm::from_numbers(&numbers));
-    let arm = arm.ok_or_else(|| unread("numbers that are no arm, since a reading moves nothing"))?;
+    let arm =
+        arm.ok_or_else(|| unreadable_error("numbers that are no arm, since a reading moves nothing"))?;
     let (_, readings) = robot.arm_model(factors)?;
     let count = robot.joint_reading_names().len();
     let mut generator = ChaCha8Rng::seed_from_u64(1);

@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Proof, Written, export_error, remaining};
+use super::{ExportedText, Proof, export_error, remaining_difference};
 use crate::calibration_file::PoseEntry;
 use crate::model::{Model, ModelSource};
 use crate::offsets::ModelOffsets;
 use poecal_arm::lie::Pose;
 use poecal_formats::proof::Difference;
-use poecal_model::offsets::{Explanation, into_screws};
+use poecal_model::offsets::{OffsetExplanation, into_screws};
 use poecal_model::robot::{Joint, JointKind, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::json_text;
@@ -20,7 +20,7 @@ use poecal_storage::json_text;
 const TICKS: f64 = 4096.0;
 
 #[derive(Serialize)]
-struct File<'a> {
+struct OffsetsFile<'a> {
     form: &'static str,
     formula: &'static str,
     robot: &'a str,
@@ -30,8 +30,8 @@ struct File<'a> {
     counted: Vec<JointOffset>,
     base_motion: PoseEntry,
     tool_motion: PoseEntry,
-    without_offsets: Left,
-    remains: Left,
+    without_offsets: TipErrorsEntry,
+    remains: TipErrorsEntry,
 }
 
 #[derive(Serialize)]
@@ -46,7 +46,7 @@ struct JointOffset {
 
 /// Errors of the tip.
 #[derive(Serialize)]
-struct Left {
+struct TipErrorsEntry {
     rms_mm: f64,
     max_mm: f64,
     rms_deg: f64,
@@ -54,7 +54,7 @@ struct Left {
 }
 
 /// Offsets with the best base and tool.
-fn explained(model: &Model, robot: &Robot) -> Result<(Robot, Explanation)> {
+fn explain_offsets(model: &Model, robot: &Robot) -> Result<(Robot, OffsetExplanation)> {
     let ModelSource::Calibration(file) = &model.source else {
         return Err(export_error(
             "found a model, expected the calibration.json of a robot that had other numbers before"
@@ -68,20 +68,20 @@ fn explained(model: &Model, robot: &Robot) -> Result<(Robot, Explanation)> {
 }
 
 /// The nominal robot with offsets, another base and another tool.
-fn moved(nominal: &Robot, offsets: &[f64], base: &Pose, tool: &Pose) -> Result<Robot> {
+fn move_nominal(nominal: &Robot, offsets: &[f64], base: &Pose, tool: &Pose) -> Result<Robot> {
     let mut robot = into_screws(&nominal.without_offsets(), offsets)?;
     for joint in &mut robot.joints {
-        joint.screw = joint.screw.transformed(base);
+        joint.screw = joint.screw.transform(base);
         joint.frame = *base * joint.frame;
     }
     robot.home = *base * robot.home * *tool;
     Ok(robot)
 }
 
-pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
-    let (_, found) = explained(model, robot)?;
+pub(crate) fn write(model: &Model, robot: &Robot) -> Result<ExportedText> {
+    let (_, found) = explain_offsets(model, robot)?;
     let joints = robot.joints.iter().zip(&found.offsets).enumerate();
-    let left = |error: &poecal_model::offsets::TipError| Left {
+    let left = |error: &poecal_model::offsets::TipError| TipErrorsEntry {
         rms_mm: error.rms_m * 1e3,
         max_mm: error.max_m * 1e3,
         rms_deg: error.rms_rad.to_degrees(),
@@ -93,8 +93,8 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         offset_mm: (joint.kind == JointKind::Prismatic).then_some(offset * 1e3),
         determined: !found.undetermined.contains(&at),
     };
-    let counted = counted(model, robot, &found)?;
-    let file = File {
+    let counted = controller_offsets(model, robot, &found)?;
+    let file = OffsetsFile {
         form: "offsets",
         formula: "value of a joint = its reading + offset; T(q) = base_motion * T_nominal(q + offsets) * tool_motion, nearly: remains",
         robot: &robot.name,
@@ -109,13 +109,13 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     let notes = vec![words(&found)];
     let left = &found.with_offsets;
     let remains = Difference { position_m: left.max_m, rotation_rad: left.max_rad };
-    Ok(Written { text, notes, proof: Proof::Remains(remains) })
+    Ok(ExportedText { text, notes, proof: Proof::Remains(remains) })
 }
 
 /// Offsets of the controller's counts; empty if these are the model's readings.
-fn counted(model: &Model, robot: &Robot, found: &Explanation) -> Result<Vec<JointOffset>> {
+fn controller_offsets(model: &Model, robot: &Robot, found: &OffsetExplanation) -> Result<Vec<JointOffset>> {
     let Some(controller) = model.sums() else { return Ok(Vec::new()) };
-    let counting = controller.counting()?;
+    let counting = controller.controller_map()?;
     let mut of_readings = vec![0.0; counting.names().len()];
     let mut slides = vec![false; of_readings.len()];
     let mut is_known = vec![true; of_readings.len()];
@@ -138,7 +138,7 @@ fn counted(model: &Model, robot: &Robot, found: &Explanation) -> Result<Vec<Join
     Ok(change.iter().enumerate().map(offset).collect())
 }
 
-fn words(found: &Explanation) -> String {
+fn words(found: &OffsetExplanation) -> String {
     format!(
         "offsets, base and tool are all that this form says: over the sampled range the tip is off by {:.4} mm (RMS), up to {:.4} mm and {:.5} deg; without offsets by \
          {:.4} mm (RMS)",
@@ -181,8 +181,8 @@ fn motors_of(robot: &Robot, motors: Option<&str>) -> Result<BTreeMap<String, Mot
 }
 
 /// Offsets in ticks of Feetech's motors, `position = ticks - homing_offset`.
-pub(crate) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<Written> {
-    let (nominal, found) = explained(model, robot)?;
+pub(crate) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<ExportedText> {
+    let (nominal, found) = explain_offsets(model, robot)?;
     if let Some(joint) = robot.joints.iter().find(|it| it.kind == JointKind::Prismatic) {
         return Err(export_error(format!(
             "found joint `{}`, which slides, expected joints that motors turn",
@@ -223,20 +223,24 @@ pub(crate) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
         motor.homing_offset = corrected;
         rounded.push(ticks * TAU / TICKS);
     }
-    let again = moved(&nominal, &rounded, &found.base_motion, &found.tip_motion)?;
-    let remains = remaining(robot, &again);
-    let alone = moved(&nominal, &rounded, &Pose::identity(), &Pose::identity())?;
+    let again = move_nominal(&nominal, &rounded, &found.base_motion, &found.tip_motion)?;
+    let remains = remaining_difference(robot, &again);
+    let alone = move_nominal(&nominal, &rounded, &Pose::identity(), &Pose::identity())?;
     let mut notes = vec![format!(
         "offsets alone, rounded to ticks of {:.3} deg: the tip is off by up to {:.3} mm, and by up to {:.3} mm where base and tool are entered \
          elsewhere",
         360.0 / TICKS,
-        remaining(robot, &alone).position_m * 1e3,
+        remaining_difference(robot, &alone).position_m * 1e3,
         remains.position_m * 1e3
     )];
     if motors.is_none() {
         notes.push("the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned());
     }
-    Ok(Written { text: json_text(&file, "calibration of motors")?, notes, proof: Proof::Remains(remains) })
+    Ok(ExportedText {
+        text: json_text(&file, "calibration of motors")?,
+        notes,
+        proof: Proof::Remains(remains),
+    })
 }
 
 fn option(message: String) -> Error {

@@ -3,16 +3,16 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::{Proof, Written, export_error, is_same, read_back, remaining, unread};
+use super::{ExportedText, Proof, export_error, is_same, read_back, remaining_difference, unreadable_error};
 use crate::model::Model;
 use poecal_arm::lie::{Pose, rotation};
-use poecal_formats::urdf::{Origin, UrdfDocument, origin_values};
+use poecal_formats::urdf::{UrdfDocument, UrdfOrigin, origin_values};
 use poecal_model::forms::AxisFrames;
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::error::Result;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_storage::csv_text;
-use poecal_storage::numbers::shortest;
+use poecal_storage::numbers::format_shortest;
 use poecal_storage::yaml::values;
 
 /// Numbers of an origin: `R = Rz(yaw) Ry(pitch) Rx(roll)`.
@@ -71,7 +71,7 @@ impl Flavour<'_> {
     }
 }
 
-pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
+pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Result<ExportedText> {
     let document = model.document()?;
     if let (Flavour::Names, Some(document)) = (flavour, &document)
         && let Some(written) = write_own(document, robot, &model.path)?
@@ -90,7 +90,7 @@ pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     let keys = flavour.keys(robot)?;
     let mut text = format!(
         "# Origins of the joints of {}, calibrated: metres and radians, R = Rz(yaw) Ry(pitch) Rx(roll) as in URDF; each joint turns about z.\n",
-        visible(&robot.name)
+        escape_invisible(&robot.name)
     );
     let mut notes = Vec::new();
     let is_franka = matches!(flavour, Flavour::Franka);
@@ -101,13 +101,13 @@ pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     };
     text.push_str(head);
     for (key, frame) in keys.iter().zip(&frames.joints) {
-        push_origin(&mut text, indent, &quoted(key), named_numbers(frame), is_franka);
+        push_origin(&mut text, indent, &quote_yaml(key), named_numbers(frame), is_franka);
     }
     if is_franka {
         push_origin(&mut text, indent, "joint8", named_numbers(&frames.last_from_tip), true);
     }
     match flavour {
-        Flavour::Ur(Some(hash)) => text.push_str(&format!("  hash: {}\n", quoted(hash))),
+        Flavour::Ur(Some(hash)) => text.push_str(&format!("  hash: {}\n", quote_yaml(hash))),
         Flavour::Ur(None) => notes.push(NO_HASH.to_owned()),
         Flavour::Names | Flavour::Xarm | Flavour::Franka => {}
     }
@@ -117,17 +117,17 @@ pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     if !is_none(&before) {
         let stands = format!(
             "the first origin counts from the link on which the first joint stands, which is at {} in `{}` by fixed joints of the URDF",
-            stated(&before),
+            format_pose(&before),
             robot.base_name
         );
-        let _ = writeln!(text, "# {}", visible(&stands));
+        let _ = writeln!(text, "# {}", escape_invisible(&stands));
         notes.push(stands);
     }
     let mut again = frames_of(&text, flavour, &keys, frames.last_from_tip)?;
     if let Some(first) = again.joints.first_mut() {
         *first = before * *first;
     }
-    Ok(Written { text, notes, proof: Proof::Again(again.robot(robot)?.into()) })
+    Ok(ExportedText { text, notes, proof: Proof::Again(again.robot(robot)?.into()) })
 }
 
 /// The frames of a text as written here; most forms have no place for the tip.
@@ -146,22 +146,22 @@ fn frames_of(text: &str, flavour: &Flavour<'_>, keys: &[String], last_from_tip: 
 }
 
 /// Origins of the joints of the URDF that was calibrated, including fixed ones, with its axes. `None` if an axis turned in its frame.
-fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Option<Written>> {
+fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Option<ExportedText>> {
     if !robot.is_serial() {
         return Ok(None);
     }
-    let origins = corrected(document, robot, path)?;
+    let origins = corrected_origins(document, robot, path)?;
     let mut text = format!(
         "# Origins of the joints of {}, calibrated: metres and radians, R = Rz(yaw) Ry(pitch) Rx(roll), for the axes of the URDF that was \
          calibrated.\norigins:\n",
-        visible(&robot.name)
+        escape_invisible(&robot.name)
     );
     for origin in &origins {
         let numbers = NUMBERS.into_iter().zip(origin.xyz.into_iter().chain(origin.rpy));
-        push_origin(&mut text, "  ", &quoted(&origin.joint), numbers, false);
+        push_origin(&mut text, "  ", &quote_yaml(&origin.joint), numbers, false);
     }
     let keys: Vec<String> = origins.iter().map(|origin| origin.joint.clone()).collect();
-    let read = keys.iter().zip(read(&text, &keys)?).map(|(joint, (xyz, rpy))| Origin {
+    let read = keys.iter().zip(read(&text, &keys)?).map(|(joint, (xyz, rpy))| UrdfOrigin {
         joint: joint.clone(),
         xyz,
         rpy,
@@ -173,15 +173,19 @@ fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Opti
         notes.push(push_tool(&mut text, robot, &tool));
         again.home = robot.home;
     }
-    let is_whole = is_same(robot, &remaining(robot, &again));
-    Ok(is_whole.then_some(Written { text, notes, proof: Proof::Again(again.into()) }))
+    let is_whole = is_same(robot, &remaining_difference(robot, &again));
+    Ok(is_whole.then_some(ExportedText { text, notes, proof: Proof::Again(again.into()) }))
 }
 
 /// The origins of a URDF's joints after a calibration, in its order.
-pub(crate) fn corrected(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Vec<Origin>> {
-    let patched = document.patched(robot)?;
+pub(crate) fn corrected_origins(
+    document: &UrdfDocument,
+    robot: &Robot,
+    path: &Path,
+) -> Result<Vec<UrdfOrigin>> {
+    let patched = document.patch(robot)?;
     let after = UrdfDocument::parse(&patched.text, path, &patched.selection)?.origins();
-    let of = |before: Origin| after.iter().find(|it| it.joint == before.joint).cloned().unwrap_or(before);
+    let of = |before: UrdfOrigin| after.iter().find(|it| it.joint == before.joint).cloned().unwrap_or(before);
     Ok(document.origins().into_iter().map(of).collect())
 }
 
@@ -191,8 +195,8 @@ fn push_tool(text: &mut String, robot: &Robot, tool: &Pose) -> String {
     let _ = writeln!(
         text,
         "# The tip `{}` in the frame of the last joint, which this file has no place for: {}",
-        visible(&robot.tip_name),
-        stated(tool)
+        escape_invisible(&robot.tip_name),
+        format_pose(tool)
     );
     format!(
         "the file has no place for the tip in the last joint's frame, which is a comment in it: enter it as the tool, {:.3}, {:.3}, {:.3} mm, \
@@ -213,9 +217,9 @@ fn named_numbers(pose: &Pose) -> impl Iterator<Item = (&'static str, f64)> {
 }
 
 /// The numbers of an origin with their names, on one line.
-fn stated(pose: &Pose) -> String {
+fn format_pose(pose: &Pose) -> String {
     let parts: Vec<String> =
-        named_numbers(pose).map(|(name, number)| format!("{name}: {}", shortest(number))).collect();
+        named_numbers(pose).map(|(name, number)| format!("{name}: {}", format_shortest(number))).collect();
     parts.join(", ")
 }
 
@@ -251,7 +255,7 @@ fn is_none(tool: &Pose) -> bool {
 }
 
 /// A key or text of YAML, in quotes unless it is plain.
-pub(crate) fn quoted(text: &str) -> String {
+pub(crate) fn quote_yaml(text: &str) -> String {
     let is_plain = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         && text.starts_with(|c: char| c.is_ascii_alphabetic())
         && !["y", "n", "yes", "no", "on", "off", "true", "false", "null"]
@@ -281,7 +285,9 @@ fn read(text: &str, keys: &[String]) -> Result<Vec<([f64; 3], [f64; 3])>> {
         let mut numbers = [0.0; 6];
         for (number, name) in numbers.iter_mut().zip(NUMBERS) {
             let found = values.iter().find(|value| value.keys.iter().eq(["origins", key, name]));
-            *number = found.ok_or_else(|| unread(&format!("no number `{name}` of `{key}`")))?.number(path)?;
+            *number = found
+                .ok_or_else(|| unreadable_error(&format!("no number `{name}` of `{key}`")))?
+                .number(path)?;
         }
         let [x, y, z, roll, pitch, yaw] = numbers;
         Ok(([x, y, z], [roll, pitch, yaw]))
@@ -290,13 +296,13 @@ fn read(text: &str, keys: &[String]) -> Result<Vec<([f64; 3], [f64; 3])>> {
 }
 
 /// Origins as a table.
-pub(crate) fn write_csv(robot: &Robot) -> Result<Written> {
+pub(crate) fn write_csv(robot: &Robot) -> Result<ExportedText> {
     let frames = AxisFrames::from_robot(robot)?;
     let mut text = "joint,kind,x[m],y[m],z[m],roll[rad],pitch[rad],yaw[rad]\n".to_owned();
     let names = robot.joints.iter().map(|it| (it.name.as_str(), it.kind.word()));
     let rows = names.chain([(robot.tip_name.as_str(), "tip")]);
     for ((name, kind), frame) in rows.zip(frames.joints.iter().chain([&frames.last_from_tip])) {
-        let numbers: Vec<String> = named_numbers(frame).map(|(_, number)| shortest(number)).collect();
+        let numbers: Vec<String> = named_numbers(frame).map(|(_, number)| format_shortest(number)).collect();
         let _ = writeln!(text, "{},{kind},{}", csv_text::cell(name), numbers.join(","));
     }
     let mut poses = Vec::new();
@@ -307,12 +313,12 @@ pub(crate) fn write_csv(robot: &Robot) -> Result<Written> {
             *value = cells
                 .next()
                 .and_then(|cell| cell.parse().ok())
-                .ok_or_else(|| unread("a cell that is no number"))?;
+                .ok_or_else(|| unreadable_error("a cell that is no number"))?;
         }
         let [x, y, z, roll, pitch, yaw] = values;
         poses.push(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]));
     }
-    let last_from_tip = poses.pop().ok_or_else(|| unread("no row"))?;
+    let last_from_tip = poses.pop().ok_or_else(|| unreadable_error("no row"))?;
     let again = AxisFrames { joints: poses, last_from_tip }.robot(robot)?;
-    Ok(Written { text, notes: Vec::new(), proof: Proof::Again(again.into()) })
+    Ok(ExportedText { text, notes: Vec::new(), proof: Proof::Again(again.into()) })
 }

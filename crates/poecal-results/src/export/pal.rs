@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::origins::{self, quoted};
-use super::{Proof, Written, export_error, is_same, remaining};
+use super::origins::{self, quote_yaml};
+use super::{ExportedText, Proof, export_error, is_same, remaining_difference};
 use crate::model::{Model, ModelSource};
-use poecal_formats::urdf::Origin;
+use poecal_formats::urdf::UrdfOrigin;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 use poecal_storage::yaml::values;
@@ -18,7 +18,7 @@ const PARTS: [&str; 6] = ["_dx", "_dy", "_dz", "_droll", "_dpitch", "_dyaw"];
 /// Smaller differences (metres, radians) are rounding.
 const NONE: f64 = 1e-15;
 
-pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
+pub(crate) fn write(model: &Model, robot: &Robot) -> Result<ExportedText> {
     let kept = match &model.source {
         ModelSource::Calibration(file) => file.original_urdf(&model.path)?,
         ModelSource::Urdf(_) | ModelSource::Toml => None,
@@ -27,18 +27,19 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         let message = "found no URDF in the calibration whose origins could be corrected, expected the calibration of a chain of one";
         return Err(export_error(message.to_owned()));
     };
-    let (before, after) = (document.origins(), origins::corrected(&document, robot, &model.path)?);
+    let (before, after) = (document.origins(), origins::corrected_origins(&document, robot, &model.path)?);
     let mut text = String::new();
     for (origin, after) in before.iter().zip(&after) {
         for (end, difference) in PARTS.iter().zip(differences(origin, after)) {
             if difference.abs() > NONE {
-                let _ = writeln!(text, "    {}: {difference:?}", quoted(&format!("{}{end}", origin.joint)));
+                let _ =
+                    writeln!(text, "    {}: {difference:?}", quote_yaml(&format!("{}{end}", origin.joint)));
             }
         }
     }
     let mut notes = Vec::new();
-    let again = document.with_origins(&corrected(&before, &read(&text)?));
-    let remains = remaining(robot, &again);
+    let again = document.with_origins(&add_numbers(&before, &read(&text)?));
+    let remains = remaining_difference(robot, &again);
     let mut head =
         "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
     if !is_same(robot, &remains) {
@@ -51,7 +52,7 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         notes.push(lost);
     }
     head.push_str("robot_state_publisher:\n  geometric_calibration:\n");
-    Ok(Written { text: head + &text, notes, proof: Proof::Remains(remains) })
+    Ok(ExportedText { text: head + &text, notes, proof: Proof::Remains(remains) })
 }
 
 /// Numbers by their names.
@@ -63,7 +64,7 @@ fn read(text: &str) -> Result<BTreeMap<String, f64>> {
 }
 
 /// Addition to an origin; of the two equivalent sets of angles the smaller one.
-fn differences(before: &Origin, after: &Origin) -> [f64; 6] {
+fn differences(before: &UrdfOrigin, after: &UrdfOrigin) -> [f64; 6] {
     let turn = |angle: f64| angle - TAU * (angle / TAU).round();
     let by = |rpy: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| turn(rpy[k] - before.rpy[k])) };
     let [roll, pitch, yaw] = after.rpy;
@@ -75,11 +76,11 @@ fn differences(before: &Origin, after: &Origin) -> [f64; 6] {
 }
 
 /// Origins with the file's differences added.
-fn corrected(origins: &[Origin], numbers: &BTreeMap<String, f64>) -> Vec<Origin> {
-    let of = |origin: &Origin| {
+fn add_numbers(origins: &[UrdfOrigin], numbers: &BTreeMap<String, f64>) -> Vec<UrdfOrigin> {
+    let of = |origin: &UrdfOrigin| {
         let added: [f64; 6] =
             PARTS.map(|end| numbers.get(&format!("{}{end}", origin.joint)).copied().unwrap_or(0.0));
-        Origin {
+        UrdfOrigin {
             joint: origin.joint.clone(),
             xyz: std::array::from_fn(|k| origin.xyz[k] + added[k]),
             rpy: std::array::from_fn(|k| origin.rpy[k] + added[k + 3]),

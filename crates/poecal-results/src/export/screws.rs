@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Proof, Written, unread};
+use super::{ExportedText, Proof, unreadable_error};
 use crate::calibration_file::{GravityEntry, PoseEntry};
 use crate::model::{Model, ModelSource};
 use nalgebra::Vector3;
@@ -13,7 +13,7 @@ use poecal_numerics::error::Result;
 use poecal_storage::json_text;
 
 #[derive(Serialize, Deserialize)]
-struct File {
+struct ScrewsFile {
     form: String,
     formula: String,
     units: String,
@@ -33,10 +33,10 @@ struct JointScrew {
     limits: Option<[f64; 2]>,
 }
 
-pub(crate) fn write(robot: &Robot) -> Result<Written> {
+pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
     // With offsets of readings included.
     let plain = AxisFrames::from_robot(robot)?.robot(robot)?;
-    let file = File {
+    let file = ScrewsFile {
         form: "poe".to_owned(),
         formula: "T(q) = exp([S1] q1) ... exp([Sn] qn) home, with S = (v, w) in the base at zero and v = p x w of an axis through p"
             .to_owned(),
@@ -49,7 +49,7 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
     };
     let text = json_text(&file, "product of exponentials")?;
     let again = read(&text, &plain)?;
-    Ok(Written { text, notes: Vec::new(), proof: Proof::Again(again.into()) })
+    Ok(ExportedText { text, notes: Vec::new(), proof: Proof::Again(again.into()) })
 }
 
 fn of_joint(joint: &Joint) -> JointScrew {
@@ -63,7 +63,8 @@ fn of_joint(joint: &Joint) -> JointScrew {
 }
 
 fn read(text: &str, of: &Robot) -> Result<Robot> {
-    let file: File = serde_json::from_str(text).map_err(|error| unread(&format!("an error ({error})")))?;
+    let file: ScrewsFile =
+        serde_json::from_str(text).map_err(|error| unreadable_error(&format!("an error ({error})")))?;
     let mut robot = of.clone();
     for (joint, entry) in robot.joints.iter_mut().zip(&file.joints) {
         let (v, w) = (Vector3::from(entry.v), Vector3::from(entry.w));
@@ -78,13 +79,13 @@ fn read(text: &str, of: &Robot) -> Result<Robot> {
 
 /// Terms of joints beside a form that has geometry alone.
 #[derive(Serialize)]
-struct Beside<'a> {
+struct ExtraTerms<'a> {
     robot: &'a str,
     formula: &'static str,
     units: &'static str,
     /// Compliant joints, which turn by terms alone, with their axes.
     gives: Vec<JointScrew>,
-    terms: Vec<BesideTerm<'a>>,
+    terms: Vec<ExtraTerm<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     gravity: Option<&'a GravityEntry>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
@@ -92,7 +93,7 @@ struct Beside<'a> {
 }
 
 #[derive(Serialize)]
-struct BesideTerm<'a> {
+struct ExtraTerm<'a> {
     joint: &'a str,
     term: String,
     formula: String,
@@ -100,14 +101,14 @@ struct BesideTerm<'a> {
 }
 
 /// Properties of the joints of a model that a form of geometry alone cannot hold.
-pub(crate) fn beside(model: &Model) -> Result<Option<String>> {
+pub(crate) fn describe_extra_terms(model: &Model) -> Result<Option<String>> {
     let plain = model.robot.without_offsets();
     if plain.terms.is_empty() {
         return Ok(None);
     }
     let terms = plain.terms.iter().filter_map(|it| {
         let joint = plain.joints.get(it.joint)?;
-        Some(BesideTerm {
+        Some(ExtraTerm {
             joint: &joint.name,
             term: it.term.to_string(),
             formula: it.term.formula(),
@@ -118,7 +119,7 @@ pub(crate) fn beside(model: &Model) -> Result<Option<String>> {
         ModelSource::Calibration(file) => file.robot.gravity.as_ref(),
         ModelSource::Urdf(_) | ModelSource::Toml => None,
     };
-    let file = Beside {
+    let file = ExtraTerms {
         robot: &plain.name,
         formula: "value of a joint = its reading + sum of coefficient * f, each f as stated, of the values of all joints without terms; a give \
                   named JOINT~x or JOINT~y turns the link of JOINT about the axis (v, w) in the base at zero",

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Proof, Written, unread};
+use super::{ExportedText, Proof, unreadable_error};
 use crate::calibration_file::PoseEntry;
 use poecal_model::forms::{DhConvention, DhEntry, DhTable};
 use poecal_model::robot::Robot;
@@ -10,7 +10,7 @@ use poecal_numerics::error::Result;
 use poecal_storage::json_text;
 
 #[derive(Serialize, Deserialize)]
-struct File {
+struct TablesFile {
     form: String,
     convention: DhConvention,
     formula: String,
@@ -23,9 +23,9 @@ struct File {
     last_from_tip: PoseEntry,
 }
 
-pub(crate) fn write(robot: &Robot, convention: DhConvention) -> Result<Written> {
+pub(crate) fn write(robot: &Robot, convention: DhConvention) -> Result<ExportedText> {
     let table = DhTable::from_robot(robot, convention)?;
-    let file = File {
+    let file = TablesFile {
         form: "dh".to_owned(),
         convention,
         formula: format!(
@@ -41,12 +41,13 @@ pub(crate) fn write(robot: &Robot, convention: DhConvention) -> Result<Written> 
         last_from_tip: (&table.last_from_tip).into(),
     };
     let text = json_text(&file, "table")?;
-    let again: File = serde_json::from_str(&text).map_err(|error| unread(&format!("an error ({error})")))?;
+    let again: TablesFile =
+        serde_json::from_str(&text).map_err(|error| unreadable_error(&format!("an error ({error})")))?;
     let again = DhTable {
         convention: again.convention,
         base_from_first: again.base_from_first.pose()?,
         rows: again.rows,
         last_from_tip: again.last_from_tip.pose()?,
     };
-    Ok(Written { text, notes: Vec::new(), proof: Proof::Again(again.frames().robot(robot)?.into()) })
+    Ok(ExportedText { text, notes: Vec::new(), proof: Proof::Again(again.frames().robot(robot)?.into()) })
 }

@@ -1,6 +1,6 @@
 //! The frames that a calibration located, as transforms: targets on the tip, and the measuring device or board in the base.
 
-use super::{Exported, export_error};
+use super::{ExportedRobot, export_error};
 use crate::calibration_file::{CalibrationFile, MeasuredEntry, StationEntry};
 use crate::frame_texts::NamedFrame;
 use crate::model::{Model, ModelSource};
@@ -13,7 +13,7 @@ use poecal_numerics::error::Result;
 const DEVICE: &str = "device";
 
 /// The forms of all transforms, as `poecal hand-eye` writes them.
-pub(crate) fn write(model: &Model) -> Result<Exported> {
+pub(crate) fn write(model: &Model) -> Result<ExportedRobot> {
     let ModelSource::Calibration(file) = &model.source else {
         let message = "found a model, expected a calibration.json: a model has located nothing";
         return Err(export_error(message.to_owned()).in_file(&model.path));
@@ -24,7 +24,7 @@ pub(crate) fn write(model: &Model) -> Result<Exported> {
         let message = "found no target on the tip and no device that were located, expected one: rows in the base frame that see the tip locate nothing";
         return Err(export_error(message.to_owned()).in_file(&model.path));
     }
-    let elsewhere: Vec<&str> = elsewhere(file);
+    let elsewhere: Vec<&str> = names_elsewhere(file);
     if !elsewhere.is_empty() {
         notes.push(format!(
             "{} on other links are not among the transforms: calibration.json has them in the frames of their joints",
@@ -32,7 +32,7 @@ pub(crate) fn write(model: &Model) -> Result<Exported> {
         ));
     }
     let remains = Difference { position_m: 0.0, rotation_rad: 0.0 };
-    Ok(Exported { text: all.join("\n"), notes, remains, beside: None })
+    Ok(ExportedRobot { text: all.join("\n"), notes, remains, beside: None })
 }
 
 /// Targets in the frame of the tip, and notes on them.
@@ -42,7 +42,7 @@ fn on_tip(file: &CalibrationFile) -> Result<(Vec<String>, Vec<String>)> {
     for (name, target) in file.targets.iter().filter(|(_, it)| it.on.is_none()) {
         let frame =
             NamedFrame { parent: file.robot.tip_link.clone(), child: name.clone(), pose: target.pose()? };
-        match target.measured() {
+        match target.measured_entry() {
             MeasuredEntry::Pose => all.push(frame.short_forms()),
             MeasuredEntry::Position => all.push(frame.position_forms()),
             MeasuredEntry::Nothing => {
@@ -90,7 +90,7 @@ fn device_name(file: &CalibrationFile) -> String {
 }
 
 /// Names of targets on links other than the tip's.
-fn elsewhere(file: &CalibrationFile) -> Vec<&str> {
+fn names_elsewhere(file: &CalibrationFile) -> Vec<&str> {
     let targets = file.targets.iter().filter(|(_, it)| it.on.is_some()).map(|(name, _)| name.as_str());
     targets.chain(file.instruments.keys().map(String::as_str)).collect()
 }

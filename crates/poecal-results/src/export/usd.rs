@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector3;
 
-use super::{Proof, Written, remaining, unread};
+use super::{ExportedText, Proof, remaining_difference, unreadable_error};
 use poecal_arm::lie::Pose;
 use poecal_model::forms::AxisFrames;
 use poecal_model::robot::{Body, JointKind, Robot};
 use poecal_numerics::error::Result;
-use poecal_storage::numbers::shortest;
+use poecal_storage::numbers::format_shortest;
 
-pub(crate) fn write(robot: &Robot) -> Result<Written> {
+pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
     let frames = AxisFrames::from_robot(robot)?;
     let plain = frames.robot(robot)?;
     let mut text = String::new();
@@ -37,8 +37,16 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
         push_joint(&mut text, (schema, &format!("joint{}", at + 1)), (&before, &link), frame);
         text.push_str("        uniform token physics:axis = \"Z\"\n");
         if let Some(limits) = joint.limits {
-            let _ = writeln!(text, "        float physics:lowerLimit = {}", shortest(limits.lower * scale));
-            let _ = writeln!(text, "        float physics:upperLimit = {}", shortest(limits.upper * scale));
+            let _ = writeln!(
+                text,
+                "        float physics:lowerLimit = {}",
+                format_shortest(limits.lower * scale)
+            );
+            let _ = writeln!(
+                text,
+                "        float physics:upperLimit = {}",
+                format_shortest(limits.upper * scale)
+            );
         }
         let _ = writeln!(
             text,
@@ -51,7 +59,7 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
     push_joint(&mut text, ("PhysicsFixedJoint", "tool"), (&before, "tip"), &frames.last_from_tip);
     text.push_str("    }\n}\n");
     let again = read(&text, frames.joints.len())?.robot(robot)?;
-    let remains = remaining(robot, &again);
+    let remains = remaining_difference(robot, &again);
     let words = format!(
         "frames of joints are of single precision in USD: the tip is off by up to {:.1e} m and {:.1e} rad",
         remains.position_m, remains.rotation_rad
@@ -65,7 +73,11 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
     } else {
         "masses of links are those of the model, moments of inertia are left to the simulator"
     };
-    Ok(Written { text: head + &text, notes: vec![words, masses.to_owned()], proof: Proof::Remains(remains) })
+    Ok(ExportedText {
+        text: head + &text,
+        notes: vec![words, masses.to_owned()],
+        proof: Proof::Remains(remains),
+    })
 }
 
 /// The mass of a link, kg, and its centre in the base at zero; `None` if the model states none.
@@ -82,7 +94,7 @@ fn push_body(text: &mut String, name: &str, pose: &Pose, mass: Option<(f64, Vect
         let [x, y, z] = <[f64; 3]>::from(pose.inverse().act(&centre)).map(|it| it as f32);
         let words = format!(
             "        point3f physics:centerOfMass = ({x:?}, {y:?}, {z:?})\n        float physics:mass = {}\n",
-            shortest(kg)
+            format_shortest(kg)
         );
         (", \"PhysicsMassAPI\"", words)
     });
@@ -118,10 +130,11 @@ fn read(text: &str, count: usize) -> Result<AxisFrames> {
     let mut poses = Vec::with_capacity(count + 1);
     for pair in places.iter().zip(&turns) {
         let ([x, y, z], [w, qx, qy, qz]) = (pair.0.as_slice(), pair.1.as_slice()) else {
-            return Err(unread("a frame without numbers"));
+            return Err(unreadable_error("a frame without numbers"));
         };
         poses.push(Pose::from_position_quaternion([*x, *y, *z], [*qx, *qy, *qz, *w]));
     }
-    let last_from_tip = poses.pop().filter(|_| poses.len() == count).ok_or_else(|| unread("no frame"))?;
+    let last_from_tip =
+        poses.pop().filter(|_| poses.len() == count).ok_or_else(|| unreadable_error("no frame"))?;
     Ok(AxisFrames { joints: poses, last_from_tip })
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::Station;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::ObjectKind;
-use poecal_storage::folder::{self, LeftOut};
+use poecal_storage::folder::{self, SkippedEntry};
 use poecal_storage::hashes::sha256;
 
 /// Most letters of a serial number.
@@ -14,7 +14,7 @@ const LONGEST: usize = 100;
 
 /// A file of measurements.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Found {
+pub struct InboxFile {
     /// Serial number of its robot.
     pub serial: String,
     /// Date of its measurement from its path; empty if the path has none.
@@ -25,7 +25,7 @@ pub struct Found {
     pub path: PathBuf,
 }
 
-impl Found {
+impl InboxFile {
     /// The folder of its results.
     #[must_use]
     pub fn results(&self, station: &Station) -> PathBuf {
@@ -72,14 +72,14 @@ impl Found {
 ///
 /// # Errors
 /// [`ErrorKind::File`] if the folder before the first braces cannot be read, or a folder has too many files.
-pub fn newest(station: &Station) -> Result<(Vec<Found>, Vec<LeftOut>)> {
+pub fn list_files(station: &Station) -> Result<(Vec<InboxFile>, Vec<SkippedEntry>)> {
     let parts: Vec<&str> = Path::new(&station.inbox).iter().filter_map(|part| part.to_str()).collect();
     let plain = parts.iter().take_while(|part| !part.contains('{')).count();
     let root: PathBuf = parts[..plain].iter().collect();
     let root = if root.as_os_str().is_empty() { PathBuf::from(".") } else { root };
     let (mut found, mut left) = (Vec::new(), Vec::new());
     let none =
-        Found { serial: String::new(), date: String::new(), of_type: String::new(), path: root.clone() };
+        InboxFile { serial: String::new(), date: String::new(), of_type: String::new(), path: root.clone() };
     let cannot = |error: io::Error| {
         ErrorKind::File.error(format!("the inbox cannot be read ({error})")).in_file(&root)
     };
@@ -91,16 +91,16 @@ pub fn newest(station: &Station) -> Result<(Vec<Found>, Vec<LeftOut>)> {
 
 /// Goes down the parts of a path, from the folder `root`.
 fn walk(
-    at: &Found,
+    at: &InboxFile,
     (root, parts): (&Path, &[&str]),
-    found: &mut Vec<Found>,
-    left: &mut Vec<LeftOut>,
+    found: &mut Vec<InboxFile>,
+    left: &mut Vec<SkippedEntry>,
 ) -> io::Result<()> {
     let Some((part, rest)) = parts.split_first() else { return Ok(()) };
     let (names, others) = folder::names(&at.path)?;
     left.extend(others);
     for name in names {
-        let Some(own) = matched(part, &name) else { continue };
+        let Some(own) = match_pattern(part, &name) else { continue };
         let path = at.path.join(&name);
         let kind = match folder::kind(root, &path) {
             Ok(kind) => kind,
@@ -112,7 +112,7 @@ fn walk(
         let pick = |key: &str, before: &String| {
             own.iter().find(|it| it.0 == key).map_or_else(|| before.clone(), |it| it.1.clone())
         };
-        let next = Found {
+        let next = InboxFile {
             serial: pick("serial", &at.serial),
             date: pick("date", &at.date),
             of_type: pick("type", &at.of_type),
@@ -128,14 +128,14 @@ fn walk(
 }
 
 /// The texts in place of the braces, if a name matches this pattern: each as short as possible.
-fn matched(pattern: &str, name: &str) -> Option<Vec<(String, String)>> {
+fn match_pattern(pattern: &str, name: &str) -> Option<Vec<(String, String)>> {
     let Some(open) = pattern.find('{') else { return (pattern == name).then(Vec::new) };
     let rest = name.strip_prefix(pattern.get(..open)?)?;
     let close = open + pattern.get(open..)?.find('}')?;
     let (key, after) = (pattern.get(open + 1..close)?, pattern.get(close + 1..)?);
     let ends = rest.char_indices().map(|(at, letter)| at + letter.len_utf8());
     ends.into_iter().find_map(|end| {
-        let mut others = matched(after, rest.get(end..)?)?;
+        let mut others = match_pattern(after, rest.get(end..)?)?;
         others.insert(0, (key.to_owned(), rest.get(..end)?.to_owned()));
         Some(others)
     })
@@ -147,9 +147,9 @@ mod tests {
 
     #[test]
     fn names_are_matched_by_patterns() {
-        let found = matched("{serial}_{date}.csv", "SN1_2026-01-02.csv").unwrap();
+        let found = match_pattern("{serial}_{date}.csv", "SN1_2026-01-02.csv").unwrap();
         assert_eq!(found, [("serial".into(), "SN1".into()), ("date".into(), "2026-01-02".into())]);
-        assert_eq!(matched("{serial}.csv", ".csv"), None);
-        assert_eq!(matched("{serial}.csv", "a.txt"), None);
+        assert_eq!(match_pattern("{serial}.csv", ".csv"), None);
+        assert_eq!(match_pattern("{serial}.csv", "a.txt"), None);
     }
 }

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::LedgerRow;
 use crate::calibration_file::schema_of;
-use crate::output::{Existing, FilePlace};
+use crate::output::{ExistingFiles, ReservedFile};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::{self, ObjectKind};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
 /// Usual name of the file.
 pub const LEDGER: &str = "fleet.jsonl";
@@ -24,13 +24,13 @@ pub struct Ledger {
     /// The lines, in their order.
     rows: Vec<LedgerRow>,
     /// Indices of each robot's and date's lines.
-    places: BTreeMap<Key, Vec<usize>>,
+    places: BTreeMap<LedgerKey, Vec<usize>>,
 }
 
 /// Serial number, date and type.
-type Key = (String, String, String);
+type LedgerKey = (String, String, String);
 
-fn key(row: &LedgerRow) -> Key {
+fn key(row: &LedgerRow) -> LedgerKey {
     (row.serial.clone(), row.date.clone(), row.of_type.clone())
 }
 
@@ -46,7 +46,8 @@ impl Ledger {
         rows(&text[..whole], path)?.into_iter().for_each(|row| ledger.add(row));
         if whole < text.len() {
             let kept = String::from_utf8_lossy(&text[..whole]).into_owned();
-            FilePlace::reserve(path, Existing::forced(true), &[], &mut |_| ())?.write(vec![kept.into()])?;
+            ReservedFile::reserve(path, ExistingFiles::from_switch(true), &[], &mut |_| ())?
+                .write(vec![kept.into()])?;
         }
         Ok(ledger)
     }
@@ -63,7 +64,7 @@ impl Ledger {
     }
 
     /// Lines of the same robot and date, the last first.
-    fn alike(&self, row: &LedgerRow) -> impl Iterator<Item = &LedgerRow> {
+    fn rows_like(&self, row: &LedgerRow) -> impl Iterator<Item = &LedgerRow> {
         let places = self.places.get(&key(row)).map_or(&[][..], Vec::as_slice);
         places.iter().rev().map(|at| &self.rows[*at])
     }
@@ -71,13 +72,13 @@ impl Ledger {
     /// True if it has a row of the same inputs.
     #[must_use]
     pub fn has(&self, row: &LedgerRow) -> bool {
-        self.alike(row).any(|it| it.inputs == row.inputs)
+        self.rows_like(row).any(|it| it.inputs == row.inputs)
     }
 
     /// The last row of the same robot and date.
     #[must_use]
     pub fn latest_match(&self, row: &LedgerRow) -> Option<&LedgerRow> {
-        self.alike(row).next()
+        self.rows_like(row).next()
     }
 
     /// Appends a row, in one piece, and waits until it is on the disk.
@@ -89,11 +90,12 @@ impl Ledger {
         let text = serde_json::to_string(&row).map_err(|error| {
             ErrorKind::Export.error(format!("the row of the ledger cannot be written: {error}"))
         })?;
-        let written = disk::here().append(&self.path).and_then(|mut out| {
+        let written = disk::current_disk().append(&self.path).and_then(|mut out| {
             out.write_all(format!("{text}\n").as_bytes())?;
             out.sync()
         });
-        written.map_err(|error| refused(&self.path, format!("the ledger cannot be written ({error})")))?;
+        written
+            .map_err(|error| ledger_error(&self.path, format!("the ledger cannot be written ({error})")))?;
         self.add(row);
         Ok(())
     }
@@ -107,7 +109,7 @@ pub fn read_ledgers(paths: &[PathBuf]) -> Result<Vec<LedgerRow>> {
     let mut all: Vec<LedgerRow> = Vec::new();
     for path in paths {
         let Some(text) = bytes(path)? else {
-            return Err(refused(
+            return Err(ledger_error(
                 path,
                 "found no file, expected a ledger as `poecal fleet` writes it".to_owned(),
             ));
@@ -115,7 +117,7 @@ pub fn read_ledgers(paths: &[PathBuf]) -> Result<Vec<LedgerRow>> {
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         all.extend(rows(&text[..whole], path)?);
     }
-    let last: BTreeMap<Key, usize> = all.iter().enumerate().map(|(at, row)| (key(row), at)).collect();
+    let last: BTreeMap<LedgerKey, usize> = all.iter().enumerate().map(|(at, row)| (key(row), at)).collect();
     let mut kept: Vec<usize> = last.into_values().collect();
     kept.sort_unstable();
     let mut found: Vec<LedgerRow> = kept.into_iter().map(|at| all[at].clone()).collect();
@@ -125,21 +127,21 @@ pub fn read_ledgers(paths: &[PathBuf]) -> Result<Vec<LedgerRow>> {
 }
 
 fn bytes(path: &Path) -> Result<Option<Vec<u8>>> {
-    let disk = disk::here();
-    let failed = |error: io::Error| refused(path, format!("the ledger cannot be read ({error})"));
+    let disk = disk::current_disk();
+    let failed = |error: io::Error| ledger_error(path, format!("the ledger cannot be read ({error})"));
     match disk.follow(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(failed(error)),
         Ok(there) if there.kind != ObjectKind::File => {
-            return Err(refused(path, "found no file, expected a ledger or nothing".to_owned()));
+            return Err(ledger_error(path, "found no file, expected a ledger or nothing".to_owned()));
         }
         Ok(_) => {}
     }
     let mut text = Vec::new();
-    let most = Limit::Ledger.most();
+    let most = ResourceLimit::Ledger.value();
     disk.open(path).and_then(|file| file.take(most + 1).read_to_end(&mut text)).map_err(failed)?;
     if text.len() as u64 > most {
-        return Err(refused(path, Limit::Ledger.exceeded("a ledger")));
+        return Err(ledger_error(path, ResourceLimit::Ledger.exceeded_error("a ledger")));
     }
     Ok(Some(text))
 }
@@ -164,6 +166,6 @@ fn rows(text: &[u8], path: &Path) -> Result<Vec<LedgerRow>> {
     lines.map(row).collect()
 }
 
-fn refused(path: &Path, message: String) -> Error {
+fn ledger_error(path: &Path, message: String) -> Error {
     ErrorKind::File.error(message).in_file(path)
 }

@@ -40,7 +40,7 @@ pub struct CorrectionRow {
 
 /// Effect of one group of terms at one joint: milliradians, of shift and runout millimetres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TermRow {
+pub struct GroupEffect {
     /// The joint.
     pub joint: String,
     /// The group: sag, tilt, ratio, harmonics …
@@ -112,7 +112,7 @@ pub struct LedgerRow {
     /// Each joint's correction.
     pub corrections: Vec<CorrectionRow>,
     /// Effects of joints beyond geometry.
-    pub terms: Vec<TermRow>,
+    pub terms: Vec<GroupEffect>,
     /// True if the line's estimate of its robots was the prior.
     #[serde(default)]
     pub by_prior: bool,
@@ -138,7 +138,7 @@ mod sentence {
 }
 
 /// A figure without insignificant digits.
-fn shown(value: f64) -> f64 {
+fn format_figure(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
 
@@ -149,7 +149,7 @@ fn word(value: impl Serialize) -> Option<String> {
 impl LedgerRow {
     /// The same row with the findings of a calibration.
     #[must_use]
-    pub fn with(self, file: &CalibrationFile) -> Self {
+    pub fn with_findings(self, file: &CalibrationFile) -> Self {
         let held = file.accuracy.held_out.as_ref();
         let set = held.unwrap_or(&file.accuracy.training);
         let is_corrected = set.corrected.is_some();
@@ -161,28 +161,28 @@ impl LedgerRow {
             let slides = change.shift_mm.is_none();
             Some(CorrectionRow {
                 joint: entry.joint.clone(),
-                offset: change.offset_deg.or(change.offset_mm).map(shown),
-                sigma_offset: change.sigma_offset.map(shown),
+                offset: change.offset_deg.or(change.offset_mm).map(format_figure),
+                sigma_offset: change.sigma_offset.map(format_figure),
                 unit: if slides { "mm" } else { "deg" }.to_owned(),
-                tilt_deg: shown(length(&change.tilt_deg)),
-                sigma_tilt_deg: change.sigma_tilt_deg.map(shown),
-                shift_mm: shown(change.shift_mm.as_ref().map_or(0.0, length)),
-                sigma_shift_mm: change.sigma_shift_mm.map(shown),
-                axis_tilt_deg: entry.axis.tilt_deg.map_or(0.0, shown),
-                axis_shift_mm: entry.axis.shift_mm.map_or(0.0, shown),
-                tilt_from_data: entry.tilt_from_data.map(shown),
-                shift_from_data: entry.shift_from_data.map(shown),
+                tilt_deg: format_figure(length(&change.tilt_deg)),
+                sigma_tilt_deg: change.sigma_tilt_deg.map(format_figure),
+                shift_mm: format_figure(change.shift_mm.as_ref().map_or(0.0, length)),
+                sigma_shift_mm: change.sigma_shift_mm.map(format_figure),
+                axis_tilt_deg: entry.axis.tilt_deg.map_or(0.0, format_figure),
+                axis_shift_mm: entry.axis.shift_mm.map_or(0.0, format_figure),
+                tilt_from_data: entry.tilt_from_data.map(format_figure),
+                shift_from_data: entry.shift_from_data.map(format_figure),
             })
         };
         let effects = file.corrected.iter().flat_map(|it| &it.effects);
-        let term = |it: &crate::calibration_file::EffectEntry| TermRow {
+        let term = |it: &crate::calibration_file::EffectEntry| GroupEffect {
             joint: it.joint.clone(),
             group: it.group.clone(),
-            amplitude: shown(it.amplitude),
-            sigma: shown(it.sigma),
+            amplitude: format_figure(it.amplitude),
+            sigma: format_figure(it.sigma),
             found: it.found,
         };
-        let mut terms: Vec<TermRow> = effects.map(term).collect();
+        let mut terms: Vec<GroupEffect> = effects.map(term).collect();
         terms.sort_by(|a, b| (&a.joint, &a.group).cmp(&(&b.joint, &b.group)));
         let verdict = file.verdict.as_ref();
         let is_good = verdict.is_some_and(|it| it.level == Level::Good);
@@ -190,16 +190,17 @@ impl LedgerRow {
         let reason = verdict.filter(|_| !is_good).and_then(|it| it.reasons.first().cloned());
         let limits = failed.map(|_| "a limit of `accept` is not shown to be kept".to_owned());
         let sizes = file.corrected.iter().flat_map(|it| &it.sizes);
-        let size = |(group, size): (&String, &f64)| SizeRow { group: group.clone(), size: shown(*size) };
+        let size =
+            |(group, size): (&String, &f64)| SizeRow { group: group.clone(), size: format_figure(*size) };
         let sigma = file.noise.sigma.iter().next().map(|(_, sigma)| sigma);
         LedgerRow {
             verdict: verdict.and_then(|it| word(it.level)),
             reason: limits.or(reason),
             accepted: file.acceptance.as_ref().and_then(|it| word(it.decision)),
             rows: Some(file.accuracy.training.count as u64 + held.map_or(0, |it| it.count as u64)),
-            error_rms: Some(shown(error_rms)),
+            error_rms: Some(format_figure(error_rms)),
             error_of: Some(error_of.to_owned()),
-            noise: sigma.map(shown),
+            noise: sigma.map(format_figure),
             corrections: file.corrections.iter().filter_map(correction).collect(),
             terms,
             sizes: sizes.map(size).collect(),

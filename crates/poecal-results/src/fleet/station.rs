@@ -7,13 +7,13 @@ use serde::Deserialize;
 
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::hashes::sha256_of;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text;
 
 /// The keys of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct StationFile {
     poecal_station: toml::Spanned<i64>,
     inbox: toml::Spanned<String>,
     results: toml::Spanned<String>,
@@ -31,11 +31,11 @@ struct File {
 }
 
 /// Refuses a file at an offset.
-type Refuse<'a> = &'a dyn Fn(usize, String) -> Result<()>;
+type OffsetRefusal<'a> = &'a dyn Fn(usize, String) -> Result<()>;
 
-impl File {
+impl StationFile {
     /// Refuses paths without a placeholder for the serial number, or with an unknown placeholder.
-    fn check_paths(&self, refuse: Refuse<'_>) -> Result<()> {
+    fn check_paths(&self, refuse: OffsetRefusal<'_>) -> Result<()> {
         for (key, of) in [("inbox", &self.inbox), ("results", &self.results)] {
             let named = of.get_ref();
             if named.matches("{serial}").count() != 1 {
@@ -64,7 +64,7 @@ impl File {
     }
 
     /// Refuses a station without the models of its types.
-    fn check_models(&self, models: &BTreeMap<String, PathBuf>, refuse: Refuse<'_>) -> Result<()> {
+    fn check_models(&self, models: &BTreeMap<String, PathBuf>, refuse: OffsetRefusal<'_>) -> Result<()> {
         let has_types = self.inbox.get_ref().contains("{type}");
         if models.is_empty() || (!has_types && !models.contains_key("")) {
             let expected =
@@ -75,7 +75,7 @@ impl File {
     }
 
     /// Refuses limits that are no range.
-    fn check_limits(&self, refuse: Refuse<'_>) -> Result<()> {
+    fn check_limits(&self, refuse: OffsetRefusal<'_>) -> Result<()> {
         for (name, [low, high]) in &self.limits {
             // NaN is in no order.
             if !(low < high && (low.is_finite() || high.is_finite())) {
@@ -145,12 +145,15 @@ impl Station {
     /// # Errors
     /// [`ErrorKind::File`] if it cannot be read; [`ErrorKind::Syntax`], with line and column, if it is no station.
     pub fn read(path: &Path) -> Result<Self> {
-        let text =
-            source_text::read_up_to(path, "a station (TOML: inbox, results and model)", Limit::Settings)?;
+        let text = source_text::read_up_to(
+            path,
+            "a station (TOML: inbox, results and model)",
+            ResourceLimit::Settings,
+        )?;
         let refused =
             |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, &text, offset);
         let refuse = |offset: usize, message: String| Err(refused(offset, message));
-        let file: File = match toml::from_str(&text) {
+        let file: StationFile = match toml::from_str(&text) {
             Ok(file) => file,
             Err(error) => {
                 let at = error.span().map_or(0, |span| span.start);

@@ -127,7 +127,7 @@ pub struct TestResult {
 
 impl BoundsEntry {
     fn new(bounds: &FigureBounds, unit: Unit) -> Self {
-        let [found, from, to] = [bounds.found, bounds.from, bounds.to].map(|it| unit.shown(it));
+        let [found, from, to] = [bounds.found, bounds.from, bounds.to].map(|it| unit.in_shown_unit(it));
         BoundsEntry { found, from, to }
     }
 }
@@ -155,7 +155,7 @@ impl FigureLimitEntry {
         FigureLimitEntry {
             figure: judged.limit.name.symbol(),
             unit: unit.symbol(),
-            limit: unit.shown(judged.limit.most),
+            limit: unit.in_shown_unit(judged.limit.most),
             worst: BoundsEntry::new(&judged.worst, unit),
             decision: judged.decision,
         }

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use super::TestFrame;
 use crate::calibration_file::CalibrationFile;
 use crate::model::{Model, ModelSource};
-use crate::predictions::{PredictionFrame, default_target, predicted};
+use crate::predictions::{PredictionFrame, default_target, predict_readings};
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::{TestLabels, TestRow};
 use poecal_import::{LabelColumns, MeasurementFile, ReadOptions, read, read_labels};
@@ -63,7 +63,7 @@ pub struct TestFile {
 pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions) -> Result<TestFile> {
     let gantry = gantry(paths, options, model.is_none())?;
     let commanded = match (model, &gantry) {
-        (Some(model), _) => nominal(model)?,
+        (Some(model), _) => nominal_model(model)?,
         (None, robot) => Model { robot: robot.clone(), source: ModelSource::Toml, path: PathBuf::new() },
     };
     let reading = ReadOptions { ignore_sets: true, ..options.reading.clone() };
@@ -76,12 +76,12 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
     let readings: Vec<f64> = (0..data.len()).flat_map(|row| data.readings(row)).copied().collect();
     let poses = |model: &Model| {
         Ok::<_, poecal_numerics::error::Error>(
-            predicted(model, &readings, PredictionFrame::Base, target.as_deref(), false)?.poses,
+            predict_readings(model, &readings, PredictionFrame::Base, target.as_deref(), false)?.poses,
         )
     };
     let wanted = poses(&commanded)?;
     let calibrated = match model {
-        Some(model) if calibration(model).is_some() => Some(poses(&model.clone().corrected()?)?),
+        Some(model) if calibration(model).is_some() => Some(poses(&model.clone().corrected_model()?)?),
         _ => None,
     };
     let labels = labels(paths, &commanded.robot, &reading);
@@ -104,13 +104,13 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
                 seen.stated.get(Quantity::Position).or(options.sigma_position_m),
                 seen.stated.get(Quantity::Rotation).or(options.sigma_rotation_rad),
             ],
-            labels: words.map(|it| labelled(it)).unwrap_or_default(),
+            labels: words.map(|it| labels_from_words(it)).unwrap_or_default(),
             place,
         })
     });
     let mut rows = rows.collect::<Result<Vec<TestRow>>>()?;
     let mut warnings = doubts(model, &mut rows, target.as_deref(), options.frame);
-    warnings.extend(model.and_then(|model| fitted(calibration(model)?, &read)));
+    warnings.extend(model.and_then(|model| find_fitted_files(calibration(model)?, &read)));
     let speed = rows.first().map(|it| it.labels.speed.clone()).unwrap_or_default();
     Ok(TestFile { rows, base_from_device, speed, warnings, read })
 }
@@ -133,7 +133,7 @@ fn calibration(model: &Model) -> Option<&CalibrationFile> {
 }
 
 /// The model by which a controller commands: the nominal one.
-fn nominal(model: &Model) -> Result<Model> {
+fn nominal_model(model: &Model) -> Result<Model> {
     let robot = match calibration(model) {
         Some(file) => file.nominal_robot().map_err(|error| error.in_file(&model.path))?,
         None => model.robot.clone(),
@@ -194,7 +194,7 @@ fn stated_frame(model: Option<&Model>, frame: TestFrame) -> Result<Option<Pose>>
                     "found --device-frame calibration and no calibration, expected --robot calibration.json, or the frame unknown or base",
                 );
             };
-            let corrected = file.corrected();
+            let corrected = file.corrected_file();
             let own = corrected.as_ref().unwrap_or(file);
             own.base_from_device().map(Some).map_err(|error| error.in_file(&model.path))
         }
@@ -229,7 +229,7 @@ fn labels(paths: &[PathBuf], robot: &Robot, reading: &ReadOptions) -> Vec<LabelC
 }
 
 /// LabelColumns of a row by its words.
-fn labelled(words: &[String]) -> TestLabels {
+fn labels_from_words(words: &[String]) -> TestLabels {
     let of = |at: usize| words.get(at).cloned().unwrap_or_default();
     TestLabels {
         pose: of(0),
@@ -243,7 +243,7 @@ fn labelled(words: &[String]) -> TestLabels {
 }
 
 /// Files of which the calibration was made, whose rows it predicts better than others.
-fn fitted(file: &CalibrationFile, read: &MeasurementFile) -> Option<String> {
+fn find_fitted_files(file: &CalibrationFile, read: &MeasurementFile) -> Option<String> {
     let sums: Vec<&String> =
         file.inputs.measurements.iter().filter_map(|name| file.inputs.sha256.get(name)).collect();
     let (name, _) = read.sha256.iter().find(|(_, sum)| sums.contains(sum))?;
@@ -262,8 +262,11 @@ fn doubts(
     let mut said = Vec::new();
     let Some(model) = model else { return said };
     let first = rows.first().map(|it| it.commanded);
-    let turn_rad =
-        rows.iter().zip(first).map(|(row, first)| row.commanded.apart(&first).1).fold(0.0, f64::max);
+    let turn_rad = rows
+        .iter()
+        .zip(first)
+        .map(|(row, first)| row.commanded.distance_and_angle(&first).1)
+        .fold(0.0, f64::max);
     if target.is_none() && turn_rad > SAME_RAD && calibration(model).is_none() {
         said.push(format!(
             "found commanded orientations that differ by up to {:.1} deg and a target whose place on the flange is not known, expected it in the model: \

@@ -1,7 +1,7 @@
 //! Output of a calibration.
 
 use super::contents::REPORT;
-use super::{FilePlace, FolderPlace, NewFile, Page, Written, robot_files, write_files};
+use super::{NewFile, PagePieces, ReservedFile, ReservedFolder, WrittenFiles, robot_files, write_files};
 use crate::calibration_file::CalibrationFile;
 use crate::model::Model;
 use crate::residuals::ResidualRows;
@@ -16,7 +16,7 @@ pub struct Results<'a> {
     /// Contents of `residuals.csv`.
     pub residuals: ResidualRows<'a>,
     /// `report.html`, if wanted.
-    pub report: Option<Page>,
+    pub report: Option<PagePieces>,
 }
 
 /// Writes a calibration's files, of the calibrated robot with its targets. They are written to a staging folder first, read back and compared with
@@ -27,12 +27,12 @@ pub struct Results<'a> {
 /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a file read back differs from the fit by more than 1e-9 m or rad.
 /// Nothing is left behind then.
 pub fn write(
-    place: FolderPlace,
-    elsewhere: Option<FilePlace>,
+    place: ReservedFolder,
+    elsewhere: Option<ReservedFile>,
     model: &Model,
     robot: &Robot,
     results: Results<'_>,
-) -> Result<Written> {
+) -> Result<WrittenFiles> {
     let mut notes = Vec::new();
     let json = results.file.to_text()?;
     // As in the file: every later path from it to a URDF produces the same text.

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
-use super::existing::{Existing, refused};
-use super::journal::{Journal, Step};
-use super::place::{FolderPlace, check_existing, check_own, own_names};
+use super::existing::{ExistingFiles, path_error};
+use super::journal::{Journal, JournalStep};
+use super::output_folder::{ReservedFolder, check_existing, check_own, own_names};
 use super::staging::{self, OLD, Staging};
-use super::{NewFile, interrupted, leftovers};
+use super::{NewFile, interruption, leftovers};
 use poecal_numerics::error::{Error, Result};
 use poecal_storage::disk::{Disk, Lock};
 use poecal_storage::document;
@@ -16,11 +16,11 @@ use poecal_storage::document;
 /// Most attempts to lock a folder that others exchange.
 const ATTEMPTS: usize = 1000;
 
-impl FolderPlace {
+impl ReservedFolder {
     /// Writes one of the new files into the staging folder.
     pub(crate) fn stage(&mut self, file: &NewFile) -> Result<()> {
         self.staging.write(file).map_err(|error| {
-            refused(
+            path_error(
                 &self.named.join(&file.name),
                 format!(
                     "the file cannot be written ({error}), expected a folder that can be written to: choose another with --out"
@@ -30,17 +30,17 @@ impl FolderPlace {
     }
 
     /// Puts new files of these names in place, and removes other files of an earlier run. Returns messages. The caller holds
-    /// [`interrupted::undisturbed`].
+    /// [`interruption::hold_clean_up`].
     pub(crate) fn put(mut self, names: &[String]) -> Result<Vec<String>> {
         let place = self.named.clone();
         let failed = |cause: io::Error| {
-            refused(&place, format!("the results cannot be put in place ({cause}): nothing was changed"))
+            path_error(&place, format!("the results cannot be put in place ({cause}): nothing was changed"))
         };
         self.staging.sync().map_err(failed)?;
         document::forget();
         if !self.was_there {
             match self.staging.disk.rename_new(&self.staging.new_files(), &self.folder) {
-                Ok(()) => return Ok(self.synced(self.folder.parent())),
+                Ok(()) => return Ok(self.sync_names(self.folder.parent())),
                 Err(error) if !is_taken(&error) => return Err(failed(error)),
                 Err(_) => self.move_inside(failed)?,
             }
@@ -63,7 +63,7 @@ impl FolderPlace {
     }
 
     /// Messages after syncing a folder's names.
-    fn synced(&self, folder: Option<&Path>) -> Vec<String> {
+    fn sync_names(&self, folder: Option<&Path>) -> Vec<String> {
         let synced = folder.map_or(Ok(()), |folder| self.staging.disk.sync_folder(folder));
         let note = |error| {
             format!(
@@ -76,10 +76,10 @@ impl FolderPlace {
 
     /// The folder has been created meanwhile: continues from inside it, if that is allowed.
     fn move_inside(&mut self, failed: impl Fn(io::Error) -> Error) -> Result<()> {
-        if self.existing == Existing::Kept {
+        if self.existing == ExistingFiles::Kept {
             let message = "found the output folder made by another run meanwhile, expected it to be new: nothing was changed; choose \
                            another with --out, or overwrite its results with --force";
-            return Err(refused(&self.named, message));
+            return Err(path_error(&self.named, message));
         }
         let inside =
             Staging::make(&self.staging.disk, &self.folder, &staging::prefix(None)).map_err(&failed)?;
@@ -110,7 +110,7 @@ impl FolderPlace {
         if disk.exchange(&new, &self.folder).is_err() {
             return disk.rename_new(&new, &self.staging.new_files()).map(|()| None);
         }
-        let notes = self.synced(self.folder.parent());
+        let notes = self.sync_names(self.folder.parent());
         self.remove_earlier(beside);
         Ok(Some(notes))
     }
@@ -124,7 +124,7 @@ impl FolderPlace {
                 || name.to_str().is_some_and(|name| self.contents.is_own(name))
         };
         // A process in this folder would find itself in a removed one.
-        let is_here = disk.actual(Path::new(".")).is_ok_and(|here| here.starts_with(&self.folder));
+        let is_here = disk.canonical_path(Path::new(".")).is_ok_and(|here| here.starts_with(&self.folder));
         if is_here || !names.iter().all(is_ours) {
             return None;
         }
@@ -139,7 +139,7 @@ impl FolderPlace {
     /// Removes the earlier folder, which holds this run's staging folder and is now at the place of the new one.
     fn remove_earlier(&mut self, mut beside: Staging) {
         let (disk, earlier) = (self.staging.disk.clone(), beside.new_files());
-        interrupted::ended(&self.staging.folder);
+        interruption::note_end(&self.staging.folder);
         if let Some(name) = self.staging.folder.file_name() {
             self.staging.folder = earlier.join(name);
         }
@@ -154,28 +154,28 @@ impl FolderPlace {
     fn exchange_files(&mut self, names: &[String], replaced: &BTreeSet<String>) -> Result<Vec<String>> {
         let (disk, staging) = (self.staging.disk.clone(), self.staging.folder.clone());
         let (disk, folder) = (disk.as_ref(), self.folder.clone());
-        let error = |message: String| Err(refused(&self.named, message));
+        let error = |message: String| Err(path_error(&self.named, message));
         let put = |name: &String| {
-            let step = if replaced.contains(name) { Step::Put } else { Step::Add };
+            let step = if replaced.contains(name) { JournalStep::Put } else { JournalStep::Add };
             (step, name.clone())
         };
         let stale = replaced.iter().filter(|name| !names.contains(name));
-        let stale = stale.map(|name| (Step::Remove, name.clone()));
+        let stale = stale.map(|name| (JournalStep::Remove, name.clone()));
         let journal = Journal(names.iter().map(put).chain(stale).collect());
         let kept = keep_old(disk, &self.staging, &folder, replaced)
-            .and_then(|()| journal.keep(disk, &staging, &journal.back(replaced)));
+            .and_then(|()| journal.keep(disk, &staging, &journal.undo_journal(replaced)));
         if let Err(cause) = kept {
             // After an error here, the journal must not be executed.
             self.staging.abandoned = Journal::end(disk, &staging).is_err();
             return error(format!("the results cannot be put in place ({cause}): nothing was changed"));
         }
         let Err(cause) = journal.carry_out(disk, &staging, &folder, false) else {
-            let notes = self.synced(Some(&folder));
+            let notes = self.sync_names(Some(&folder));
             let _ = Journal::end(disk, &staging);
             return Ok(notes);
         };
         let returned = Journal::turn_back(disk, &staging)
-            .and_then(|()| Journal::kept(disk, &staging))
+            .and_then(|()| Journal::find_kept(disk, &staging))
             .and_then(|back| back.map_or(Ok(()), |back| back.carry_out(disk, &staging, &folder, false)))
             .and_then(|()| disk.sync_folder(&folder))
             .and_then(|()| Journal::end(disk, &staging));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::staging;
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::disk::{Disk, Object, ObjectKind};
+use poecal_storage::disk::{Disk, DiskObject, ObjectKind};
 use poecal_storage::named_files;
 
 /// Text that identifies a report.
@@ -15,7 +15,7 @@ const HEAD: u64 = 4096;
 
 /// Treatment of existing files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
+pub enum ExistingFiles {
     /// They stay, and nothing is written.
     Kept,
     /// Those written by poecal are replaced: a folder with a `calibration.json`, a report.
@@ -24,25 +24,25 @@ pub enum Existing {
     Replaced,
 }
 
-impl Existing {
+impl ExistingFiles {
     /// Variant by the state of a switch.
     #[must_use]
-    pub fn forced(force: bool) -> Self {
-        if force { Existing::Replaced } else { Existing::Kept }
+    pub fn from_switch(force: bool) -> Self {
+        if force { ExistingFiles::Replaced } else { ExistingFiles::Kept }
     }
 }
 
 /// An error at a path.
-pub(crate) fn refused(path: &Path, message: impl Into<String>) -> Error {
+pub(crate) fn path_error(path: &Path, message: impl Into<String>) -> Error {
     ErrorKind::File.error(message).in_file(path)
 }
 
 /// The object at a path, if there is one.
-pub(crate) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Object>> {
-    staging::there(disk, path).map_err(|error| {
+pub(crate) fn find_object(disk: &dyn Disk, path: &Path) -> Result<Option<DiskObject>> {
+    staging::find_object(disk, path).map_err(|error| {
         let message =
             format!("the place cannot be looked at ({error}), expected one to write to: choose another");
-        refused(path, message)
+        path_error(path, message)
     })
 }
 
@@ -53,24 +53,24 @@ pub(crate) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBu
         _ => Path::new("."),
     };
     let Some(name) = path.file_name() else {
-        return Err(refused(path, "found no name at the end of the path, expected one: name the place"));
+        return Err(path_error(path, "found no name at the end of the path, expected one: name the place"));
     };
-    match disk.actual(parent) {
+    match disk.canonical_path(parent) {
         Ok(actual) if disk.follow(&actual).is_ok_and(|found| found.kind == ObjectKind::Folder) => {
             Ok((actual.clone(), actual.join(name)))
         }
         _ => {
             let message = "the folder above does not exist, expected one to write into: create it first";
-            Err(refused(path, message))
+            Err(path_error(path, message))
         }
     }
 }
 
 /// Object at the end of a link.
-pub(crate) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Object)> {
-    let actual = disk.actual(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
+pub(crate) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, DiskObject)> {
+    let actual = disk.canonical_path(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
     actual.map_err(|error| {
-        refused(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
+        path_error(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
     })
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Re
          with --out",
         input.display()
     );
-    Err(refused(path, message))
+    Err(path_error(path, message))
 }
 
 /// True if poecal wrote a file.

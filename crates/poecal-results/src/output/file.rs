@@ -3,9 +3,11 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::existing::{Existing, GENERATOR, found, is_of_poecal, led_to, new_place, refuse_input, refused};
+use super::existing::{
+    ExistingFiles, GENERATOR, find_object, is_of_poecal, led_to, new_place, path_error, refuse_input,
+};
 use super::staging::{self, Staging};
-use super::{NewFile, Page, interrupted, leftovers};
+use super::{NewFile, PagePieces, interruption, leftovers};
 use poecal_numerics::error::{Error, Result};
 use poecal_storage::disk::{self, Disk, ObjectKind};
 use poecal_storage::document;
@@ -24,29 +26,29 @@ fn is_stream(path: &Path) -> bool {
 }
 
 /// A reserved place for a file. Nothing has changed yet.
-pub struct FilePlace {
+pub struct ReservedFile {
     /// Path as stated by the user.
     named: PathBuf,
-    way: Way,
+    way: WriteMethod,
 }
 
-enum Way {
+enum WriteMethod {
     /// A stream.
     Stream(PathBuf),
     /// A file, written beside its place and then moved there.
-    Staged { path: PathBuf, existing: Existing, replaces: bool, staging: Staging },
+    Staged { path: PathBuf, existing: ExistingFiles, replaces: bool, staging: Staging },
 }
 
-impl std::fmt::Debug for FilePlace {
+impl std::fmt::Debug for ReservedFile {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FilePlace").field("named", &self.named).finish_non_exhaustive()
     }
 }
 
 /// A replaced file that can still be restored.
-pub(crate) struct Put(Option<(PathBuf, bool, Staging)>);
+pub(crate) struct ReplacedFile(Option<(PathBuf, bool, Staging)>);
 
-impl FilePlace {
+impl ReservedFile {
     /// Checks that a file may be written, and makes room for it beside its place. Devices and pipes are written directly; links are
     /// followed. Remains of an interrupted run are removed first, with a message. `inputs` are files of this run, which are never replaced.
     ///
@@ -55,16 +57,16 @@ impl FilePlace {
     /// nothing can be written there.
     pub fn reserve(
         path: &Path,
-        existing: Existing,
+        existing: ExistingFiles,
         inputs: &[&Path],
         say: &mut dyn FnMut(String),
     ) -> Result<Self> {
-        let disk = disk::here();
+        let disk = disk::current_disk();
         let named = path.to_owned();
         if is_stream(path) {
-            return Ok(FilePlace { named, way: Way::Stream(path.to_owned()) });
+            return Ok(ReservedFile { named, way: WriteMethod::Stream(path.to_owned()) });
         }
-        let there = match found(disk.as_ref(), path)? {
+        let there = match find_object(disk.as_ref(), path)? {
             Some(found) if found.kind == ObjectKind::Link => Some(led_to(disk.as_ref(), path)?),
             Some(found) => Some((path.to_owned(), found)),
             None => None,
@@ -72,10 +74,10 @@ impl FilePlace {
         let at = there.as_ref().map_or(path, |(actual, _)| actual);
         match there.as_ref().map(|(_, found)| found.kind) {
             Some(ObjectKind::Folder) => {
-                return Err(refused(path, "found a directory, expected a file to write: name the file"));
+                return Err(path_error(path, "found a directory, expected a file to write: name the file"));
             }
             Some(ObjectKind::Other | ObjectKind::Link) => {
-                return Ok(FilePlace { named, way: Way::Stream(at.to_owned()) });
+                return Ok(ReservedFile { named, way: WriteMethod::Stream(at.to_owned()) });
             }
             Some(ObjectKind::File) | None => {}
         }
@@ -85,22 +87,23 @@ impl FilePlace {
         if replaces {
             refuse_input(disk.as_ref(), path, inputs)?;
             if !may_go(disk.as_ref(), at, existing) {
-                return Err(refused(path, IN_THE_WAY));
+                return Err(path_error(path, IN_THE_WAY));
             }
         }
         let prefix = staging::prefix(place.file_name());
-        let staging = Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable(path, &error))?;
-        Ok(FilePlace { named, way: Way::Staged { path: place, existing, replaces, staging } })
+        let staging =
+            Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable_error(path, &error))?;
+        Ok(ReservedFile { named, way: WriteMethod::Staged { path: place, existing, replaces, staging } })
     }
 
     /// Writes the file from consecutive pieces.
     ///
     /// # Errors
     /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it cannot be written; then nothing has changed.
-    pub fn write(mut self, page: Page) -> Result<()> {
+    pub fn write(mut self, page: PagePieces) -> Result<()> {
         self.stage(page)?;
-        let _undisturbed = interrupted::undisturbed();
-        self.put().map(Put::finish)
+        let _undisturbed = interruption::hold_clean_up();
+        self.put().map(ReplacedFile::finish)
     }
 
     /// Writes the file from the pieces that `make` passes on, so that it is never held whole.
@@ -118,7 +121,7 @@ impl FilePlace {
     /// Writes the file from bytes, which need not be text of a known encoding.
     ///
     /// # Errors
-    /// As [`FilePlace::write`].
+    /// As [`ReservedFile::write`].
     pub fn write_bytes(self, bytes: &[u8]) -> Result<()> {
         self.write_pieces(|out| out(bytes))
     }
@@ -128,10 +131,10 @@ impl FilePlace {
         make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<()>) -> Result<T>,
     ) -> Result<T> {
         let named = self.named.clone();
-        let failed = |error: &io::Error| unwritable(&named, error);
+        let failed = |error: &io::Error| unwritable_error(&named, error);
         let made = match &mut self.way {
-            Way::Stream(path) => {
-                let mut out = disk::here().stream(path).map_err(|error| failed(&error))?;
+            WriteMethod::Stream(path) => {
+                let mut out = disk::current_disk().stream(path).map_err(|error| failed(&error))?;
                 let made = make(&mut |piece| match out.write_all(piece) {
                     // A closed pipe is no error.
                     Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -140,22 +143,22 @@ impl FilePlace {
                 out.sync().map_err(|error| failed(&error))?;
                 made
             }
-            Way::Staged { staging, .. } => {
+            WriteMethod::Staged { staging, .. } => {
                 let mut out = staging.create(NAME).map_err(|error| failed(&error))?;
                 let made = make(&mut |piece| out.write_all(piece).map_err(|error| failed(&error)))?;
                 staging.keep(out).and_then(|()| staging.sync()).map_err(|error| failed(&error))?;
                 made
             }
         };
-        let _undisturbed = interrupted::undisturbed();
-        self.put().map(Put::finish)?;
+        let _undisturbed = interruption::hold_clean_up();
+        self.put().map(ReplacedFile::finish)?;
         Ok(made)
     }
 
     /// Writes the new text beside its place, or to the stream.
-    pub(crate) fn stage(&mut self, page: Page) -> Result<()> {
+    pub(crate) fn stage(&mut self, page: PagePieces) -> Result<()> {
         let staged = match &mut self.way {
-            Way::Stream(path) => disk::here().stream(path).and_then(|mut out| {
+            WriteMethod::Stream(path) => disk::current_disk().stream(path).and_then(|mut out| {
                 let written = page.iter().try_for_each(|piece| out.write_all(piece.as_bytes()));
                 match written.and_then(|()| out.sync()) {
                     // A closed pipe is no error.
@@ -163,21 +166,23 @@ impl FilePlace {
                     written => written,
                 }
             }),
-            Way::Staged { staging, .. } => {
+            WriteMethod::Staged { staging, .. } => {
                 staging.write(&NewFile::of_page(NAME, page)).and_then(|()| staging.sync())
             }
         };
-        staged.map_err(|error| unwritable(&self.named, &error))
+        staged.map_err(|error| unwritable_error(&self.named, &error))
     }
 
     /// Puts the new text in place.
-    pub(crate) fn put(self) -> Result<Put> {
-        let Way::Staged { path, existing, replaces, staging } = self.way else { return Ok(Put(None)) };
+    pub(crate) fn put(self) -> Result<ReplacedFile> {
+        let WriteMethod::Staged { path, existing, replaces, staging } = self.way else {
+            return Ok(ReplacedFile(None));
+        };
         document::forget();
         let (disk, new, old) = (staging.disk.clone(), staging.new_files().join(NAME), staging.old_files());
         let replaces = replaces && disk.look(&path).is_ok();
         if replaces && !may_go(disk.as_ref(), &path, existing) {
-            return Err(refused(&self.named, IN_THE_WAY));
+            return Err(path_error(&self.named, IN_THE_WAY));
         }
         let moved = if replaces {
             // A file whose owner and permissions cannot be kept gets the default ones.
@@ -189,17 +194,17 @@ impl FilePlace {
             disk.rename_new(&new, &path)
         };
         match moved {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(refused(
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(path_error(
                 &self.named,
                 "found this file made by another run meanwhile, expected none: nothing was changed",
             )),
-            Err(error) => Err(unwritable(&self.named, &error)),
-            Ok(()) => Ok(Put(Some((path, replaces, staging)))),
+            Err(error) => Err(unwritable_error(&self.named, &error)),
+            Ok(()) => Ok(ReplacedFile(Some((path, replaces, staging)))),
         }
     }
 }
 
-impl Put {
+impl ReplacedFile {
     /// Restores the earlier text; extends an error if that fails too.
     pub(crate) fn take_back(self, error: Error) -> Error {
         let Some((path, replaces, staging)) = self.0 else { return error };
@@ -234,17 +239,17 @@ const IN_THE_WAY: &str =
     "found this file, expected none: choose another, or write over this one with --force";
 
 /// True if a file may be replaced.
-fn may_go(disk: &dyn Disk, path: &Path, existing: Existing) -> bool {
+fn may_go(disk: &dyn Disk, path: &Path, existing: ExistingFiles) -> bool {
     match existing {
-        Existing::Kept => false,
-        Existing::Own => is_of_poecal(disk, path, GENERATOR),
-        Existing::Replaced => true,
+        ExistingFiles::Kept => false,
+        ExistingFiles::Own => is_of_poecal(disk, path, GENERATOR),
+        ExistingFiles::Replaced => true,
     }
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Error {
+fn unwritable_error(path: &Path, error: &io::Error) -> Error {
     let message = format!(
         "the file cannot be written ({error}), expected a folder that can be written to: choose another"
     );
-    refused(path, message)
+    path_error(path, message)
 }

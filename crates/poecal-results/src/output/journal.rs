@@ -5,7 +5,7 @@ use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 
 use super::contents::Contents;
-use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone, there};
+use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, find_object, ignore_missing};
 use poecal_storage::disk::{Disk, ObjectKind};
 use poecal_storage::named_files;
 
@@ -18,7 +18,7 @@ const LONGEST: u64 = 1 << 20;
 
 /// One step of an exchange. Steps are idempotent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Step {
+pub(crate) enum JournalStep {
     /// Moves a file from the new folder to its place, replacing another one.
     Put,
     /// Moves a file from the new folder to its place, which is empty.
@@ -31,13 +31,13 @@ pub(crate) enum Step {
     Take,
 }
 
-impl Step {
-    const WORDS: [(&'static str, Step); 5] = [
-        ("put", Step::Put),
-        ("add", Step::Add),
-        ("back", Step::Back),
-        ("remove", Step::Remove),
-        ("take", Step::Take),
+impl JournalStep {
+    const WORDS: [(&'static str, JournalStep); 5] = [
+        ("put", JournalStep::Put),
+        ("add", JournalStep::Add),
+        ("back", JournalStep::Back),
+        ("remove", JournalStep::Remove),
+        ("take", JournalStep::Take),
     ];
 
     fn of_word(word: &str) -> Option<Self> {
@@ -51,11 +51,11 @@ impl Step {
 
 /// The steps of an exchange, each with the name of its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Journal(pub(crate) Vec<(Step, String)>);
+pub(crate) struct Journal(pub(crate) Vec<(JournalStep, String)>);
 
 impl Journal {
     fn text(&self) -> String {
-        let line = |(step, name): &(Step, String)| format!("{} {name}\n", step.word());
+        let line = |(step, name): &(JournalStep, String)| format!("{} {name}\n", step.word());
         format!("{HEAD}\n{}{END}\n", self.0.iter().map(line).collect::<String>())
     }
 
@@ -66,7 +66,7 @@ impl Journal {
             let (word, name) = line.split_once(' ')?;
             // Other names were never to be written.
             let name = Contents::is_of_any(name).then(|| name.to_owned())?;
-            Some((Step::of_word(word)?, name))
+            Some((JournalStep::of_word(word)?, name))
         };
         lines.lines().map(step).collect::<Option<_>>().map(Journal)
     }
@@ -92,7 +92,7 @@ impl Journal {
     ///
     /// # Errors
     /// Errors of the disk; [`io::ErrorKind::InvalidData`] if it is no journal.
-    pub(crate) fn kept(disk: &dyn Disk, staging: &Path) -> io::Result<Option<Self>> {
+    pub(crate) fn find_kept(disk: &dyn Disk, staging: &Path) -> io::Result<Option<Self>> {
         let path = staging.join(JOURNAL);
         if !is_file(disk, &path)? {
             return Ok(None);
@@ -114,36 +114,42 @@ impl Journal {
         for (step, name) in &self.0 {
             let (new, old) = (staging.join(NEW).join(name), staging.join(OLD).join(name));
             let place = folder.join(name);
-            if matches!(step, Step::Put | Step::Remove) && is_changed(disk, &old, &place)? {
-                let is_done = *step == Step::Put && !is_file(disk, &new)?;
+            if matches!(step, JournalStep::Put | JournalStep::Remove) && is_changed(disk, &old, &place)? {
+                let is_done = *step == JournalStep::Put && !is_file(disk, &new)?;
                 if !is_done && !again {
                     return Err(io::Error::other(format!("{name} was changed meanwhile")));
                 }
                 continue;
             }
             match step {
-                Step::Put if is_file(disk, &new)? => disk.rename(&new, &place)?,
-                Step::Add if again && is_file(disk, &place)? => {}
-                Step::Add if is_file(disk, &new)? => disk.rename_new(&new, &place)?,
-                Step::Back if is_file(disk, &old)? => disk.rename(&old, &place)?,
-                Step::Remove if is_file(disk, &place)? => disk.remove_file(&place)?,
-                Step::Take if !is_file(disk, &new)? && is_file(disk, &place)? => disk.remove_file(&place)?,
-                Step::Put | Step::Add | Step::Back | Step::Remove | Step::Take => {}
+                JournalStep::Put if is_file(disk, &new)? => disk.rename(&new, &place)?,
+                JournalStep::Add if again && is_file(disk, &place)? => {}
+                JournalStep::Add if is_file(disk, &new)? => disk.rename_new(&new, &place)?,
+                JournalStep::Back if is_file(disk, &old)? => disk.rename(&old, &place)?,
+                JournalStep::Remove if is_file(disk, &place)? => disk.remove_file(&place)?,
+                JournalStep::Take if !is_file(disk, &new)? && is_file(disk, &place)? => {
+                    disk.remove_file(&place)?
+                }
+                JournalStep::Put
+                | JournalStep::Add
+                | JournalStep::Back
+                | JournalStep::Remove
+                | JournalStep::Take => {}
             }
         }
         Ok(())
     }
 
     /// The journal that undoes this one, however far it was executed; the earlier files named in `replaced` are kept.
-    pub(crate) fn back(&self, replaced: &BTreeSet<String>) -> Self {
-        let added = self.0.iter().filter(|(step, _)| *step == Step::Add);
-        let taken = added.map(|(_, name)| (Step::Take, name.clone()));
-        Journal(taken.chain(replaced.iter().map(|name| (Step::Back, name.clone()))).collect())
+    pub(crate) fn undo_journal(&self, replaced: &BTreeSet<String>) -> Self {
+        let added = self.0.iter().filter(|(step, _)| *step == JournalStep::Add);
+        let taken = added.map(|(_, name)| (JournalStep::Take, name.clone()));
+        Journal(taken.chain(replaced.iter().map(|name| (JournalStep::Back, name.clone()))).collect())
     }
 
     /// Ends an exchange.
     pub(crate) fn end(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
-        gone(disk.remove_file(&staging.join(JOURNAL)))
+        ignore_missing(disk.remove_file(&staging.join(JOURNAL)))
     }
 }
 
@@ -168,7 +174,7 @@ fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
 
 /// True if there is a file.
 fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
-    Ok(there(disk, path)?.is_some_and(|found| found.kind == ObjectKind::File))
+    Ok(find_object(disk, path)?.is_some_and(|found| found.kind == ObjectKind::File))
 }
 
 #[cfg(test)]
@@ -179,11 +185,11 @@ mod tests {
     fn a_journal_reads_back_and_leads_nowhere_else() {
         let name = |name: &str| name.to_owned();
         let journal = Journal(vec![
-            (Step::Put, name("calibration.json")),
-            (Step::Add, name("figure-accuracy.svg")),
-            (Step::Remove, name("report.html")),
-            (Step::Back, name("residuals.csv")),
-            (Step::Take, name("robot.urdf")),
+            (JournalStep::Put, name("calibration.json")),
+            (JournalStep::Add, name("figure-accuracy.svg")),
+            (JournalStep::Remove, name("report.html")),
+            (JournalStep::Back, name("residuals.csv")),
+            (JournalStep::Take, name("robot.urdf")),
         ]);
         assert_eq!(Journal::parse(&journal.text()), Some(journal.clone()));
         let text = journal.text();

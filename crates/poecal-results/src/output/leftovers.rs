@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use super::contents::Contents;
 use super::journal::Journal;
-use super::{interrupted, staging};
+use super::{interruption, staging};
 use poecal_storage::disk::{Disk, Lock, ObjectKind, SystemDisk};
-use poecal_storage::held;
+use poecal_storage::write_locks;
 
 /// Attempts to remove a folder that another thread may be writing into.
 const ATTEMPTS: usize = 100;
@@ -18,15 +18,15 @@ pub(crate) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String))
     let is_folder = disk.look(place).is_ok_and(|found| found.kind == ObjectKind::Folder);
     // Remains beside a folder may belong inside.
     if let (Some(parent), Some(name)) = (place.parent(), place.file_name()) {
-        for (folder, lock) in left(disk, parent, &staging::prefix(Some(name))) {
+        for (folder, lock) in find_leftovers(disk, parent, &staging::prefix(Some(name))) {
             let target = is_folder.then_some(place);
-            say(told(&folder, place, settle_beside(disk, &folder, target).map(|()| false)));
+            say(describe_leftover(&folder, place, settle_beside(disk, &folder, target).map(|()| false)));
             drop(lock);
         }
     }
     // Locked, so that no other run puts files in place meanwhile.
     if is_folder
-        && !left(disk, place, &staging::prefix(None)).is_empty()
+        && !find_leftovers(disk, place, &staging::prefix(None)).is_empty()
         && let Ok(_locked) = disk.lock_folder(place)
     {
         settle_inside(disk, place, say);
@@ -35,17 +35,17 @@ pub(crate) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String))
 
 /// Settles remains inside a locked folder.
 pub(crate) fn settle_inside(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String)) {
-    for (folder, _lock) in left(disk, place, &staging::prefix(None)) {
-        say(told(&folder, place, settle_one(disk, &folder, place)));
+    for (folder, _lock) in find_leftovers(disk, place, &staging::prefix(None)) {
+        say(describe_leftover(&folder, place, settle_one(disk, &folder, place)));
     }
 }
 
 /// Staging folders in a folder. A folder that cannot be listed cannot be written to either, which is reported then.
-fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> Vec<(PathBuf, Lock)> {
-    staging::left(disk, parent, prefix).unwrap_or_default()
+fn find_leftovers(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> Vec<(PathBuf, Lock)> {
+    staging::find_leftovers(disk, parent, prefix).unwrap_or_default()
 }
 
-fn told(staging: &Path, place: &Path, settled: io::Result<bool>) -> String {
+fn describe_leftover(staging: &Path, place: &Path, settled: io::Result<bool>) -> String {
     match settled {
         Ok(true) => {
             format!(
@@ -73,7 +73,7 @@ fn settle_beside(disk: &dyn Disk, staging: &Path, target: Option<&Path>) -> io::
 
 /// Settles remains inside a folder; true if an exchange was completed.
 fn settle_one(disk: &dyn Disk, staging: &Path, target: &Path) -> io::Result<bool> {
-    let journal = Journal::kept(disk, staging)?;
+    let journal = Journal::find_kept(disk, staging)?;
     if let Some(journal) = &journal {
         journal.carry_out(disk, staging, target, true)?;
         disk.sync_folder(target)?;
@@ -99,18 +99,18 @@ pub(crate) fn give_back(
             }
         }
     }
-    staging::gone(disk.remove_folder(folder))
+    staging::ignore_missing(disk.remove_folder(folder))
 }
 
 /// Removes staged files of this process after waiting for those being put in place, and blocks further ones: for a program that is about to
 /// end.
 pub fn clean_up() {
-    for folder in interrupted::at_last() {
+    for folder in interruption::at_last() {
         for _ in 0..ATTEMPTS {
             if staging::remove(&SystemDisk, &folder).is_ok() {
                 break;
             }
         }
     }
-    held::give_back_all();
+    write_locks::give_back_all();
 }

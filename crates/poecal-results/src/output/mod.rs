@@ -1,6 +1,6 @@
 //! Output files and folders, written completely or not at all, with every robot model verified.
 //!
-//! A place is reserved before the work ([`FolderPlace`], [`FilePlace`]). Files are written to a staging folder (`staging.rs`), read back
+//! A place is reserved before the work ([`ReservedFolder`], [`ReservedFile`]). Files are written to a staging folder (`staging.rs`), read back
 //! and put in place together (`exchange.rs`, `journal.rs`). Remains of an interrupted run are settled by the next one (`leftovers.rs`), or
 //! by a signal handler ([`clean_up`]).
 //!
@@ -15,11 +15,11 @@ mod exchange;
 mod existing;
 mod file;
 mod hand_eye;
-mod interrupted;
+mod interruption;
 mod journal;
 mod leftovers;
+mod output_folder;
 mod photographs;
-mod place;
 mod project;
 mod reproduction;
 mod simulation;
@@ -28,16 +28,16 @@ mod validation;
 
 pub use calibration::{Results, write};
 pub use contents::{Contents, REPORT};
-pub use existing::Existing;
-pub use file::FilePlace;
+pub use existing::ExistingFiles;
+pub use file::ReservedFile;
 pub use hand_eye::write_texts;
 pub use leftovers::clean_up;
+pub use output_folder::{ReservedFolder, free_folder};
 pub use photographs::{PhotographedSession, write_photographs};
-pub use place::{FolderPlace, free_folder};
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{SimulatedSession, write_simulation};
-pub use validation::ValidationPlaces;
+pub use validation::ValidationOutputs;
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -45,7 +45,7 @@ use std::path::{Path, PathBuf};
 
 use super::model::{Model, ModelSource};
 use super::residuals::ResidualRows;
-use poecal_formats::proof::{Difference, Reference};
+use poecal_formats::proof::{Difference, ReferencePoses};
 use poecal_formats::robot_toml;
 use poecal_formats::urdf::{self, ChainSelection};
 use poecal_model::robot::Robot;
@@ -58,7 +58,7 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Summary of written files.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Written {
+pub struct WrittenFiles {
     /// The folder.
     pub folder: PathBuf,
     /// Names of the files in it.
@@ -70,11 +70,11 @@ pub struct Written {
 }
 
 /// A page in consecutive pieces, so that constant ones need not be copied.
-pub type Page = Vec<Cow<'static, str>>;
+pub type PagePieces = Vec<Cow<'static, str>>;
 
 /// Contents of a file.
-enum Content<'a> {
-    Text(Page),
+enum FileContent<'a> {
+    Text(PagePieces),
     /// Rows, written in parts: there may be many.
     Rows(ResidualRows<'a>),
     Bytes(&'a [u8]),
@@ -83,26 +83,26 @@ enum Content<'a> {
 /// A file to be written.
 pub struct NewFile<'a> {
     name: String,
-    content: Content<'a>,
+    content: FileContent<'a>,
     /// The robot of a model file, and the selection that reads it from the file.
     model_of: Option<(Cow<'a, Robot>, ChainSelection)>,
 }
 
 impl<'a> NewFile<'a> {
     fn new(name: &str, text: String) -> Self {
-        NewFile { name: name.to_owned(), content: Content::Text(vec![text.into()]), model_of: None }
+        NewFile { name: name.to_owned(), content: FileContent::Text(vec![text.into()]), model_of: None }
     }
 
-    fn of_page(name: &str, page: Page) -> Self {
-        NewFile { name: name.to_owned(), content: Content::Text(page), model_of: None }
+    fn of_page(name: &str, page: PagePieces) -> Self {
+        NewFile { name: name.to_owned(), content: FileContent::Text(page), model_of: None }
     }
 
     fn of_rows(name: &str, rows: ResidualRows<'a>) -> Self {
-        NewFile { name: name.to_owned(), content: Content::Rows(rows), model_of: None }
+        NewFile { name: name.to_owned(), content: FileContent::Rows(rows), model_of: None }
     }
 
     fn of_bytes(name: String, bytes: &'a [u8]) -> Self {
-        NewFile { name, content: Content::Bytes(bytes), model_of: None }
+        NewFile { name, content: FileContent::Bytes(bytes), model_of: None }
     }
 
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
@@ -110,14 +110,14 @@ impl<'a> NewFile<'a> {
     }
 
     fn of_urdf(name: String, text: String, robot: Cow<'a, Robot>, selection: ChainSelection) -> Self {
-        NewFile { name, content: Content::Text(vec![text.into()]), model_of: Some((robot, selection)) }
+        NewFile { name, content: FileContent::Text(vec![text.into()]), model_of: Some((robot, selection)) }
     }
 
     fn write_to(&self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
         match &self.content {
-            Content::Text(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
-            Content::Rows(rows) => rows.write_to(out),
-            Content::Bytes(bytes) => out.write_all(bytes),
+            FileContent::Text(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
+            FileContent::Rows(rows) => rows.write_to(out),
+            FileContent::Bytes(bytes) => out.write_all(bytes),
         }
     }
 
@@ -131,13 +131,13 @@ impl<'a> NewFile<'a> {
 /// Compares the models among the files with their robots; returns the largest difference.
 fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Difference> {
     let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-    let mut known: Option<Reference> = None;
+    let mut known: Option<ReferencePoses> = None;
     for file in files {
         let Some((robot, selection)) = &file.model_of else { continue };
         let read = file.read_back(selection, folder, final_folder)?;
         let reference = match known.take() {
             Some(known) if known.is_of(robot) => known,
-            _ => Reference::new(robot, CONFIGURATIONS),
+            _ => ReferencePoses::new(robot, CONFIGURATIONS),
         };
         let difference = reference.difference(&read);
         known = Some(reference);
@@ -176,11 +176,11 @@ fn robot_files<'a>(
 /// Writes the files to their staging folder, verifies the models, and puts all in place, also `elsewhere`. Other files of an earlier run
 /// are removed, so that a folder never mixes two runs.
 fn write_files(
-    mut place: FolderPlace,
+    mut place: ReservedFolder,
     files: &[NewFile],
-    elsewhere: Option<(FilePlace, Page)>,
+    elsewhere: Option<(ReservedFile, PagePieces)>,
     mut notes: Vec<String>,
-) -> Result<Written> {
+) -> Result<WrittenFiles> {
     for file in files {
         place.stage(file)?;
     }
@@ -188,14 +188,14 @@ fn write_files(
     let largest = prove(files, &place.staging.new_files(), &folder)?;
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
     let elsewhere = elsewhere.map(|(mut file, page)| file.stage(page).map(|()| file)).transpose()?;
-    let _undisturbed = interrupted::undisturbed();
-    let put = elsewhere.map(FilePlace::put).transpose()?;
+    let _undisturbed = interruption::hold_clean_up();
+    let put = elsewhere.map(ReservedFile::put).transpose()?;
     match place.put(&names) {
         Ok(said) => notes.extend(said),
         Err(error) => {
             return Err(put.into_iter().fold(error, |error, put| put.take_back(error)));
         }
     }
-    put.into_iter().for_each(file::Put::finish);
-    Ok(Written { folder, files: names, largest, notes })
+    put.into_iter().for_each(file::ReplacedFile::finish);
+    Ok(WrittenFiles { folder, files: names, largest, notes })
 }

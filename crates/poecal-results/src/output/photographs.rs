@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::contents::picture_name;
 use super::simulation::{Magnitudes, SCHEMA, actual_files};
-use super::{FolderPlace, NewFile, Written, robot_files, write_files};
+use super::{NewFile, ReservedFolder, WrittenFiles, robot_files, write_files};
 use crate::calibration_file::{JointEntry, PoseEntry, RobotEntry};
 use crate::model::Model;
 use poecal_model::camera::Distortion;
-use poecal_model::simulate::{Photographed, PictureSimulation};
+use poecal_model::simulate::{PictureSimulation, SimulatedPictures};
 use poecal_numerics::error::Result;
 use poecal_storage::csv_text::cell;
 use poecal_storage::json_text;
@@ -25,7 +25,7 @@ pub struct PhotographedSession<'a> {
     /// Options.
     pub simulation: &'a PictureSimulation,
     /// Result.
-    pub made: &'a Photographed,
+    pub made: &'a SimulatedPictures,
     /// The pictures as PNG, in the order of the session.
     pub pictures: &'a [Vec<u8>],
     /// The board in words.
@@ -36,7 +36,7 @@ pub struct PhotographedSession<'a> {
 
 /// Truth of a simulated session of pictures (`truth.json`): lengths in metres and angles in radians unless a key states another unit.
 #[derive(Serialize)]
-struct TruthFile {
+struct PictureTruthFile {
     schema: &'static str,
     poecal_version: &'static str,
     command: String,
@@ -62,10 +62,10 @@ struct TruthFile {
 /// # Errors
 /// As [`super::write_simulation`].
 pub fn write_photographs(
-    place: FolderPlace,
+    place: ReservedFolder,
     model: &Model,
     session: &PhotographedSession<'_>,
-) -> Result<Written> {
+) -> Result<WrittenFiles> {
     let PhotographedSession { simulation, made, .. } = session;
     let mut notes = Vec::new();
     let mut files = robot_files("nominal", model, &made.nominal, &mut notes)?;
@@ -75,7 +75,7 @@ pub fn write_photographs(
     files.push(NewFile::new("cameras.csv", camera(session)));
     let named = session.pictures.iter().enumerate();
     files.extend(named.map(|(at, bytes)| NewFile::of_bytes(picture_name(at), bytes)));
-    let truth = TruthFile {
+    let truth = PictureTruthFile {
         schema: SCHEMA,
         poecal_version: env!("CARGO_PKG_VERSION"),
         command: session.command.to_owned(),
@@ -110,7 +110,7 @@ fn joints(session: &PhotographedSession<'_>) -> String {
         text.push_str(&picture_name(at));
         for (value, kind) in data.readings(at).iter().zip(&kinds) {
             text.push(',');
-            push_number(&mut text, (kind.shown(*value) * STEPS).round() / STEPS);
+            push_number(&mut text, (kind.in_shown_unit(*value) * STEPS).round() / STEPS);
         }
     }
     text.push('\n');

@@ -2,16 +2,16 @@
 
 use std::ops::RangeInclusive;
 
-use super::place::taken;
-use super::{FolderPlace, NewFile, Written, write_files};
+use super::output_folder::taken_error;
+use super::{NewFile, ReservedFolder, WrittenFiles, write_files};
 use crate::model::{Model, ModelSource};
 use crate::shapes::capsules_of;
 use poecal_fit::analysis::PlannedSession;
 use poecal_formats::urdf::ChainSelection;
 use poecal_import::{plan as random_list, planned_table, template};
-use poecal_model::measurement::{Device, Kind};
+use poecal_model::measurement::{Device, SessionKind};
 use poecal_numerics::error::Result;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_plan::plan::{Conditions, PlanOptions, PlannedFit, plan, returns_of};
 use poecal_storage::{disk, source_text};
 
@@ -34,7 +34,7 @@ pub struct Project<'a> {
     /// Selected chain of the model.
     pub chain: &'a ChainSelection,
     /// Kind of the measurements.
-    pub kind: Kind,
+    pub kind: SessionKind,
     /// Number of suggested configurations.
     pub count: usize,
     /// Seed of their choice.
@@ -63,8 +63,8 @@ impl Project<'_> {
             NewFile::new(self.model_name(), model),
             NewFile::new("measurements.csv", template(robot, self.kind)?),
             NewFile::new("joints.csv", self.list()?),
-            NewFile::new("poecal.toml", self.filled(SETTINGS)),
-            NewFile::new("README.md", self.filled(README)),
+            NewFile::new("poecal.toml", self.fill_names(SETTINGS)),
+            NewFile::new("README.md", self.fill_names(README)),
         ])
     }
 
@@ -93,7 +93,7 @@ impl Project<'_> {
     }
 
     /// A text with the project's names filled in.
-    fn filled(&self, text: &str) -> String {
+    fn fill_names(&self, text: &str) -> String {
         let links = [("base_link", &self.chain.base_link), ("tip_link", &self.chain.tip_link)];
         let links = || links.into_iter().filter_map(|(key, link)| Some((key, link.as_ref()?)));
         let line = |(key, link): (&str, &String)| format!("{key} = {}\n", toml::Value::String(link.clone()));
@@ -124,7 +124,7 @@ impl Project<'_> {
             | Device::Direction
             | Device::Pair => "",
         };
-        let name = visible(&self.model.robot.name).into_owned();
+        let name = escape_invisible(&self.model.robot.name).into_owned();
         let replaced = [
             ("{before measuring}", (if self.kind.is_touched() { TOUCHED } else { PLANNED }).to_owned()),
             ("{model}", self.model_name().to_owned()),
@@ -160,10 +160,10 @@ const ROTATION_NOISE: &str =
 /// # Errors
 /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if one of the files exists or cannot be written;
 /// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if a joint has the name of a measured column. Nothing is left behind then.
-pub fn write_project(place: FolderPlace, project: &Project) -> Result<Written> {
+pub fn write_project(place: ReservedFolder, project: &Project) -> Result<WrittenFiles> {
     let model = place.named.join(project.model_name());
-    if disk::here().look(&model).is_ok() {
-        return Err(taken(&model));
+    if disk::current_disk().look(&model).is_ok() {
+        return Err(taken_error(&model));
     }
     write_files(place, &project.files()?, None, Vec::new())
 }

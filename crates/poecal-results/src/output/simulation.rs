@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{CONFIGURATIONS, FolderPlace, NewFile, Written, robot_files, write_files};
+use super::{CONFIGURATIONS, NewFile, ReservedFolder, WrittenFiles, robot_files, write_files};
 use crate::calibration_file::{FrameEntry, InstrumentEntry, JointEntry, PoseEntry, RobotEntry};
 use crate::model::Model;
 use poecal_calibrate::DeviceFrameKnowledge;
@@ -12,7 +12,7 @@ use poecal_formats::proof::Difference;
 use poecal_import as measurements;
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulated, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult};
 use poecal_numerics::error::Result;
 use poecal_storage::json_text;
 
@@ -25,9 +25,9 @@ pub struct SimulatedSession<'a> {
     /// Options.
     pub simulation: &'a Simulation,
     /// Kind of the measurements.
-    pub kind: Kind,
+    pub kind: SessionKind,
     /// Result.
-    pub made: &'a Simulated,
+    pub made: &'a SimulationResult,
     /// Further rows without noise.
     pub held_out: Option<&'a Dataset>,
     /// The command that makes the same session.
@@ -75,8 +75,11 @@ impl TruthFile {
         let SimulatedSession { simulation, made, .. } = session;
         let all: Vec<usize> = (0..made.nominal.joints.len()).collect();
         let gives = made.actual.joints.len() > made.nominal.joints.len();
-        let nominal =
-            if gives { made.nominal.giving(&all, simulation.terms.gives()).0 } else { made.nominal.clone() };
+        let nominal = if gives {
+            made.nominal.with_compliance(&all, simulation.terms.gives()).0
+        } else {
+            made.nominal.clone()
+        };
         TruthFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -111,7 +114,11 @@ impl TruthFile {
 /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written;
 /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a model read back differs by more than 1e-9 m or rad.
 /// Nothing is left behind then.
-pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSession) -> Result<Written> {
+pub fn write_simulation(
+    place: ReservedFolder,
+    model: &Model,
+    session: &SimulatedSession,
+) -> Result<WrittenFiles> {
     let SimulatedSession { simulation, made, command, .. } = session;
     let noise = Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad);
     let exact = Noise::new(0.0, 0.0);

@@ -8,8 +8,8 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{NewFile, interrupted};
-use poecal_storage::disk::{Disk, Lock, Object, ObjectKind, Output};
+use super::{NewFile, interruption};
+use poecal_storage::disk::{Disk, DiskObject, Lock, ObjectKind, Output};
 
 /// Folder of new files in a staging folder.
 pub(crate) const NEW: &str = "new";
@@ -60,11 +60,11 @@ impl Staging {
     /// Creates a staging folder in a folder, with a name that begins with `prefix`.
     pub(crate) fn new(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
         // No signal may come between its creation and its registration.
-        let _undisturbed = interrupted::undisturbed();
+        let _undisturbed = interruption::hold_clean_up();
         Staging::make(disk, parent, prefix)
     }
 
-    /// [`Staging::new`] for a holder of [`interrupted::undisturbed`].
+    /// [`Staging::new`] for a holder of [`interruption::hold_clean_up`].
     pub(crate) fn make(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
         for attempt in 0..ATTEMPTS {
             let mut name = prefix.to_owned();
@@ -74,16 +74,16 @@ impl Staging {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 made => made?,
             }
-            interrupted::begun(&folder);
+            interruption::note_begin(&folder);
             let lock = match disk.lock(&folder.join(LOCK)) {
                 Ok(Some(lock)) => Some(lock),
                 // Another run has already removed it as a remainder.
                 Ok(None) => {
-                    interrupted::ended(&folder);
+                    interruption::note_end(&folder);
                     continue;
                 }
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                    interrupted::ended(&folder);
+                    interruption::note_end(&folder);
                     continue;
                 }
                 Err(error) if error.kind() == io::ErrorKind::Unsupported => None,
@@ -148,7 +148,7 @@ impl Drop for Staging {
     fn drop(&mut self) {
         self.unsynced.clear();
         if self.abandoned {
-            interrupted::ended(&self.folder);
+            interruption::note_end(&self.folder);
         } else {
             discard(self.disk.as_ref(), &self.folder);
         }
@@ -158,7 +158,7 @@ impl Drop for Staging {
 /// Removes a staging folder of this run as far as possible; the next run removes the rest.
 fn discard(disk: &dyn Disk, folder: &Path) {
     let _ = remove(disk, folder);
-    interrupted::ended(folder);
+    interruption::note_end(folder);
 }
 
 /// Removes a staging folder with its new and old files. If it holds anything else, it stays, with an error.
@@ -168,7 +168,7 @@ pub(crate) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
     for name in JOURNALS {
         match disk.remove_file(&folder.join(name)) {
             Ok(()) => had_one = true,
-            removed => gone(removed)?,
+            removed => ignore_missing(removed)?,
         }
     }
     if had_one {
@@ -179,10 +179,10 @@ pub(crate) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
         for name in names(disk, &half)? {
             disk.remove_file(&half.join(name))?;
         }
-        gone(disk.remove_folder(&half))?;
+        ignore_missing(disk.remove_folder(&half))?;
     }
-    gone(disk.remove_file(&folder.join(LOCK)))?;
-    gone(disk.remove_folder(folder))
+    ignore_missing(disk.remove_file(&folder.join(LOCK)))?;
+    ignore_missing(disk.remove_folder(folder))
 }
 
 /// Creates a second name of a file, or a copy if there are no hard links.
@@ -197,7 +197,7 @@ pub(crate) fn keep(disk: &dyn Disk, from: &Path, to: &Path) -> io::Result<()> {
 }
 
 /// The object at a path, if there is one.
-pub(crate) fn there(disk: &dyn Disk, path: &Path) -> io::Result<Option<Object>> {
+pub(crate) fn find_object(disk: &dyn Disk, path: &Path) -> io::Result<Option<DiskObject>> {
     match disk.look(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         found => found.map(Some),
@@ -205,7 +205,7 @@ pub(crate) fn there(disk: &dyn Disk, path: &Path) -> io::Result<Option<Object>> 
 }
 
 /// Ignores the error of removing an object that does not exist.
-pub(crate) fn gone(removed: io::Result<()>) -> io::Result<()> {
+pub(crate) fn ignore_missing(removed: io::Result<()>) -> io::Result<()> {
     match removed {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         done => done,
@@ -231,7 +231,8 @@ pub(crate) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
 /// True if a staging folder and its contents are as expected and this user's: others with access to the parent folder could have put links there.
 fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
     let is = |path: &Path, kind: ObjectKind| {
-        there(disk, path).is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
+        find_object(disk, path)
+            .is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
     };
     is(folder, ObjectKind::Folder)
         && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), ObjectKind::Folder))
@@ -239,7 +240,11 @@ fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
 }
 
 /// Unlocked staging folders in a folder, each with its lock, which this run then holds.
-pub(crate) fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> io::Result<Vec<(PathBuf, Lock)>> {
+pub(crate) fn find_leftovers(
+    disk: &dyn Disk,
+    parent: &Path,
+    prefix: &OsStr,
+) -> io::Result<Vec<(PathBuf, Lock)>> {
     let mut left = Vec::new();
     for name in names(disk, parent)? {
         let folder = parent.join(&name);

@@ -3,43 +3,43 @@
 use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, REPORT};
-use super::{Existing, FilePlace, FolderPlace, NewFile, Page, Written, write_files};
+use super::{ExistingFiles, NewFile, PagePieces, ReservedFile, ReservedFolder, WrittenFiles, write_files};
 use crate::validation::{JudgedRows, Validation};
 use poecal_numerics::error::Result;
 
 /// Destinations of the output of a check.
 #[derive(Debug)]
-pub struct ValidationPlaces {
-    folder: Option<FolderPlace>,
+pub struct ValidationOutputs {
+    folder: Option<ReservedFolder>,
     /// A report outside that folder.
-    report: Option<(FilePlace, PathBuf)>,
+    report: Option<(ReservedFile, PathBuf)>,
     /// True if a report is wanted in it.
     is_among: bool,
 }
 
-impl ValidationPlaces {
+impl ValidationOutputs {
     /// Reserves a folder, if one is named, with the report in it if that is wanted, or at a path of its own. `say` receives messages about remains of
     /// interrupted runs.
     ///
     /// # Errors
-    /// As [`FolderPlace::reserve`] and [`FilePlace::reserve`].
+    /// As [`ReservedFolder::reserve`] and [`ReservedFile::reserve`].
     pub fn reserve(
         folder: Option<&Path>,
         (is_wanted, elsewhere): (bool, Option<&Path>),
-        existing: Existing,
+        existing: ExistingFiles,
         inputs: &[&Path],
         say: &mut dyn FnMut(String),
     ) -> Result<Self> {
         let folder =
-            folder.map(|path| FolderPlace::reserve(path, Contents::Validation, existing, inputs, say));
+            folder.map(|path| ReservedFolder::reserve(path, Contents::Validation, existing, inputs, say));
         let folder = folder.transpose()?;
         let place = match (elsewhere, &folder) {
             (Some(path), Some(folder)) => folder.reserve_report(path, inputs, say)?,
-            (Some(path), None) => Some(FilePlace::reserve(path, existing, inputs, say)?),
+            (Some(path), None) => Some(ReservedFile::reserve(path, existing, inputs, say)?),
             (None, _) => None,
         };
         let report = place.zip(elsewhere.map(Path::to_owned));
-        Ok(ValidationPlaces { folder, is_among: is_wanted && report.is_none(), report })
+        Ok(ValidationOutputs { folder, is_among: is_wanted && report.is_none(), report })
     }
 
     /// Writes a check's files, completely or not at all, with its page if a report is wanted. Returns the summary of the folder's files, and the path
@@ -52,8 +52,8 @@ impl ValidationPlaces {
         self,
         found: &Validation,
         rows: JudgedRows<'_>,
-        page: impl FnOnce() -> Page,
-    ) -> Result<(Option<Written>, Option<PathBuf>)> {
+        page: impl FnOnce() -> PagePieces,
+    ) -> Result<(Option<WrittenFiles>, Option<PathBuf>)> {
         let (elsewhere, path) = self.report.unzip();
         let Some(folder) = self.folder else {
             elsewhere.map(|place| place.write(page())).transpose()?;

@@ -8,10 +8,10 @@ use super::rows::{
     RowDiagnostics, columns, corner_columns,
 };
 use poecal_import::{Cell, Separator, split};
-use poecal_model::measurement::{ByQuantity, Measured, Quantity};
+use poecal_model::measurement::{ByQuantity, MeasuredQuantities, Quantity};
 use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text;
 
 /// Advice for a file of another kind.
@@ -24,7 +24,7 @@ impl Residuals {
     /// [`ErrorKind::File`] if it cannot be read, [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        Self::parse(&source_text::read_up_to(path, EXPECTED, Limit::Table)?, path)
+        Self::parse(&source_text::read_up_to(path, EXPECTED, ResourceLimit::Table)?, path)
     }
 
     /// Reads the text of a file.
@@ -46,7 +46,7 @@ impl Residuals {
             let done = done.and_then(|()| {
                 let texts: Vec<Cow<'_, str>> = cells.iter().map(Cell::text).collect();
                 let read = if is_head { found.head(&texts, &mut named) } else { found.row(&texts, named) };
-                read.map_err(|Wrong { cell, message }| {
+                read.map_err(|CellError { cell, message }| {
                     (cells.get(cell).map_or(record.len(), |cell| cell.offset), message)
                 })
             });
@@ -59,7 +59,7 @@ impl Residuals {
     }
 
     /// Reads the header; sets `named` to true if the last column names the instrument.
-    fn head(&mut self, cells: &[Cow<'_, str>], named: &mut bool) -> std::result::Result<(), Wrong> {
+    fn head(&mut self, cells: &[Cow<'_, str>], named: &mut bool) -> std::result::Result<(), CellError> {
         let mut first = 0;
         FIRST.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
         for quantity in Quantity::ALL {
@@ -98,32 +98,32 @@ impl Residuals {
                     "found the column `{cell}`, expected a joint's name with [deg] or [mm]: calibrate again"
                 )
             };
-            self.readings.push(reading.ok_or_else(|| Wrong { cell: column, message: message() })?);
+            self.readings.push(reading.ok_or_else(|| CellError { cell: column, message: message() })?);
         }
         Ok(())
     }
 
-    fn row(&mut self, cells: &[Cow<'_, str>], named: bool) -> std::result::Result<(), Wrong> {
-        let mut cells = Cells { cells, next: 0 };
+    fn row(&mut self, cells: &[Cow<'_, str>], named: bool) -> std::result::Result<(), CellError> {
+        let mut cells = RowCells { cells, next: 0 };
         let file = index_of(&mut self.files, cells.text()?);
         let line = cells.parsed("a line number")?;
         let id = cells.text()?.to_owned();
         let held_out = match cells.text()? {
             "held_out" => true,
             "fit" => false,
-            other => return Err(cells.wrong(other, "fit or held_out")),
+            other => return Err(cells.cell_error(other, "fit or held_out")),
         };
         let target = index_of(&mut self.targets, cells.text()?);
         let errors = cells.errors(self.quantities(), self.has_corrected)?;
         let corners = if self.has_corners { cells.corners(self.has_corrected)? } else { None };
-        let judged = cells.judged()?;
+        let judged = cells.read_diagnostics()?;
         for _ in 0..self.readings.len() {
             self.values.push(cells.number()?);
         }
         let station = if named { index_of(&mut self.stations, cells.text()?) } else { 0 };
         if let Some(extra) = cells.cells.get(cells.next) {
             cells.next += 1;
-            return Err(cells.wrong(extra, "no further cell"));
+            return Err(cells.cell_error(extra, "no further cell"));
         }
         self.push(ResidualRow { file, line, id, held_out, target, station, errors, corners, judged });
         Ok(())
@@ -131,12 +131,12 @@ impl Residuals {
 }
 
 /// Skips a column that must have this name.
-fn expect(cells: &[Cow<'_, str>], next: &mut usize, expected: &str) -> std::result::Result<(), Wrong> {
+fn expect(cells: &[Cow<'_, str>], next: &mut usize, expected: &str) -> std::result::Result<(), CellError> {
     let cell = cells.get(*next).map_or("", |cell| cell);
     if cell != expected {
         let message =
             format!("found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again");
-        return Err(Wrong { cell: *next, message });
+        return Err(CellError { cell: *next, message });
     }
     *next += 1;
     Ok(())
@@ -169,43 +169,43 @@ fn records(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// Error, and its cell, from 0.
-struct Wrong {
+struct CellError {
     cell: usize,
     message: String,
 }
 
 /// The cells of a row, in sequence.
-struct Cells<'a> {
+struct RowCells<'a> {
     cells: &'a [Cow<'a, str>],
     next: usize,
 }
 
-impl<'a> Cells<'a> {
+impl<'a> RowCells<'a> {
     /// An error at the last cell that was read.
-    fn wrong(&self, found: &str, expected: &str) -> Wrong {
-        Wrong {
+    fn cell_error(&self, found: &str, expected: &str) -> CellError {
+        CellError {
             cell: self.next.saturating_sub(1),
             message: format!("found `{found}`, expected {expected}: calibrate again"),
         }
     }
 
-    fn text(&mut self) -> std::result::Result<&'a str, Wrong> {
+    fn text(&mut self) -> std::result::Result<&'a str, CellError> {
         let cell = self.cells.get(self.next).map(|cell| &**cell);
         self.next += 1;
         let message =
             || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
-        cell.ok_or_else(|| Wrong { cell: self.next.saturating_sub(1), message: message() })
+        cell.ok_or_else(|| CellError { cell: self.next.saturating_sub(1), message: message() })
     }
 
-    fn parsed<T: std::str::FromStr>(&mut self, expected: &str) -> std::result::Result<T, Wrong> {
+    fn parsed<T: std::str::FromStr>(&mut self, expected: &str) -> std::result::Result<T, CellError> {
         let cell = self.text()?;
-        cell.parse().map_err(|_| self.wrong(cell, expected))
+        cell.parse().map_err(|_| self.cell_error(cell, expected))
     }
 
-    fn number(&mut self) -> std::result::Result<f64, Wrong> {
+    fn number(&mut self) -> std::result::Result<f64, CellError> {
         let number: f64 = self.parsed("a number")?;
         let cell = self.next.checked_sub(1).and_then(|last| self.cells.get(last)).map_or("", |cell| cell);
-        if number.is_finite() { Ok(number) } else { Err(self.wrong(cell, "a finite number")) }
+        if number.is_finite() { Ok(number) } else { Err(self.cell_error(cell, "a finite number")) }
     }
 
     /// True if the next cells are all empty; then they are skipped.
@@ -221,14 +221,14 @@ impl<'a> Cells<'a> {
         &mut self,
         quantities: impl Iterator<Item = Quantity>,
         has_corrected: bool,
-    ) -> std::result::Result<Measured<ModelErrors>, Wrong> {
+    ) -> std::result::Result<MeasuredQuantities<ModelErrors>, CellError> {
         let mut found: ByQuantity<Option<ModelErrors>> = ByQuantity::default();
         for quantity in quantities {
             found[quantity] = self.errors_of(quantity, has_corrected)?;
         }
-        let errors = Measured::from_fn(|quantity| found[quantity]);
-        if errors.leading().is_none() {
-            return Err(self.wrong("", "a number"));
+        let errors = MeasuredQuantities::from_fn(|quantity| found[quantity]);
+        if errors.leading_value().is_none() {
+            return Err(self.cell_error("", "a number"));
         }
         Ok(errors)
     }
@@ -237,7 +237,7 @@ impl<'a> Cells<'a> {
         &mut self,
         quantity: Quantity,
         has_corrected: bool,
-    ) -> std::result::Result<Option<ModelErrors>, Wrong> {
+    ) -> std::result::Result<Option<ModelErrors>, CellError> {
         let components = quantity.components();
         let mut models = [0.0; MODELS];
         if self.are_empty(models.len() + usize::from(has_corrected) + components) {
@@ -255,7 +255,7 @@ impl<'a> Cells<'a> {
         Ok(Some(found.with_corrected(corrected)))
     }
 
-    fn corners(&mut self, has_corrected: bool) -> std::result::Result<Option<CornerErrors>, Wrong> {
+    fn corners(&mut self, has_corrected: bool) -> std::result::Result<Option<CornerErrors>, CellError> {
         if self.are_empty(MODELS + usize::from(has_corrected) + 1) {
             return Ok(None);
         }
@@ -265,7 +265,7 @@ impl<'a> Cells<'a> {
         Ok(Some(CornerErrors { models_px, corrected_px, at_board_mm: number()? }))
     }
 
-    fn judged(&mut self) -> std::result::Result<Option<RowDiagnostics>, Wrong> {
+    fn read_diagnostics(&mut self) -> std::result::Result<Option<RowDiagnostics>, CellError> {
         if self.are_empty(4) {
             return Ok(None);
         }

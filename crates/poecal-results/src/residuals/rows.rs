@@ -1,6 +1,6 @@
 //! Rows of `residuals.csv`, and the names of its columns.
 
-use poecal_model::measurement::{Measured, Quantity};
+use poecal_model::measurement::{MeasuredQuantities, Quantity};
 use poecal_model::robot::ReadingKind;
 
 /// First columns of every file; those of each quantity follow.
@@ -45,13 +45,13 @@ impl ModelErrors {
 
     /// The error of the calibrated model.
     #[must_use]
-    pub fn calibrated(&self) -> f64 {
+    pub fn calibrated_error(&self) -> f64 {
         self.models[2]
     }
 
     /// The error of the model that is delivered: the corrected one, if there is one.
     #[must_use]
-    pub fn delivered(&self) -> f64 {
+    pub fn delivered_error(&self) -> f64 {
         self.corrected.unwrap_or(self.models[2])
     }
 
@@ -131,7 +131,7 @@ pub struct ResidualRow {
     /// Index of its instrument; 0 if there is only one.
     pub station: usize,
     /// Errors of each measured quantity, millimetres or degrees.
-    pub errors: Measured<ModelErrors>,
+    pub errors: MeasuredQuantities<ModelErrors>,
     /// Errors of the corners of a picture.
     pub corners: Option<CornerErrors>,
     /// Diagnostics.
@@ -148,8 +148,8 @@ pub struct ResidualRow {
 /// #     pub use poecal_model::simulate::Simulation;
 /// # }
 /// use poecal::{CalibrationOptions, calibrate, Residuals, Simulation};
-/// use poecal::simulate::{Kind, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
+/// use poecal::simulate::{SessionKind, elbow};
+/// let made = Simulation::default().run(&elbow(), SessionKind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let residuals = Residuals::from_calibration(&made.data, &calibration);
 /// let text = residuals.text();
@@ -176,7 +176,7 @@ pub struct Residuals {
     /// The rows.
     pub(crate) rows: Vec<ResidualRow>,
     /// Sets of measured quantities with their numbers of rows, in the order of the first row of each.
-    pub(crate) kinds: Vec<(Measured<()>, usize)>,
+    pub(crate) kinds: Vec<(MeasuredQuantities<()>, usize)>,
     /// The readings of all rows, in sequence, degrees or millimetres.
     pub(crate) values: Vec<f64>,
 }
@@ -200,7 +200,7 @@ impl Residuals {
     }
 
     /// Counts rows that measured the same quantities.
-    pub(crate) fn count(&mut self, kind: Measured<()>, count: usize) {
+    pub(crate) fn count(&mut self, kind: MeasuredQuantities<()>, count: usize) {
         match self.kinds.iter_mut().find(|(known, _)| *known == kind) {
             Some((_, all)) => *all += count,
             None => self.kinds.push((kind, count)),
@@ -209,23 +209,23 @@ impl Residuals {
 
     /// Sets of measured quantities with their numbers of rows.
     #[must_use]
-    pub fn kinds(&self) -> &[(Measured<()>, usize)] {
+    pub fn kinds(&self) -> &[(MeasuredQuantities<()>, usize)] {
         &self.kinds
     }
 
     /// The quantities that some row measured.
     #[must_use]
-    pub fn measured(&self) -> Vec<Quantity> {
+    pub fn measured_quantities(&self) -> Vec<Quantity> {
         let has = |quantity: &Quantity| self.kinds.iter().any(|(kind, _)| kind.get(*quantity).is_some());
         Quantity::ALL.into_iter().filter(has).collect()
     }
 
     /// The first quantity that some row measured, lengths before angles: the one that judges the calibration.
     #[must_use]
-    pub fn leading(&self) -> Option<Quantity> {
-        let measured = self.measured();
-        Measured::from_fn(|quantity| measured.contains(&quantity).then_some(()))
-            .leading()
+    pub fn leading_quantity(&self) -> Option<Quantity> {
+        let measured = self.measured_quantities();
+        MeasuredQuantities::from_fn(|quantity| measured.contains(&quantity).then_some(()))
+            .leading_value()
             .map(|(quantity, ())| quantity)
     }
 

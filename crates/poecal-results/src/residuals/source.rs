@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{CornerErrors, ModelErrors, ResidualRow, Residuals, RowDiagnostics};
 use poecal_calibrate::{Calibration, RowError, RowInfluence, corner_error};
 use poecal_fit::state::Estimate;
-use poecal_model::measurement::{Dataset, Measured, Quantity};
+use poecal_model::measurement::{Dataset, MeasuredQuantities, Quantity};
 
 /// Input for computing any row.
 pub(crate) struct RowSource<'a> {
@@ -58,10 +58,10 @@ impl<'a> RowSource<'a> {
                 held_out: self.held_out[row],
                 target: observation.target,
                 station: observation.station,
-                errors: Measured::from_fn(|quantity| {
+                errors: MeasuredQuantities::from_fn(|quantity| {
                     let corrected = corrected.as_ref().map(|all| &all[at]);
                     let length = corrected.and_then(|it| it.length(quantity));
-                    let length = length.map(|value| quantity.unit().shown(value));
+                    let length = length.map(|value| quantity.unit().in_shown_unit(value));
                     Some(errors_of(errors, corrected, quantity)?.with_corrected(length))
                 }),
                 corners: self.corners(row as u32, errors, corrected.as_ref().map(|all| &all[at])),
@@ -75,7 +75,7 @@ impl<'a> RowSource<'a> {
         };
         let readings = indices.iter().flat_map(|&row| self.data.readings(row as usize));
         let kinds = self.names.readings.iter().map(|(_, kind)| *kind).cycle();
-        let values = readings.zip(kinds).map(|(&value, kind)| kind.shown(value)).collect();
+        let values = readings.zip(kinds).map(|(&value, kind)| kind.in_shown_unit(value)).collect();
         let mut found = Residuals { rows: Vec::with_capacity(indices.len()), values, ..self.names.clone() };
         indices.iter().enumerate().map(row).for_each(|row| found.push(row));
         found
@@ -108,11 +108,12 @@ fn errors_of(
     corrected: Option<&RowError>,
     quantity: Quantity,
 ) -> Option<ModelErrors> {
-    let shown = |value: f64| quantity.unit().shown(value);
+    let shown = |value: f64| quantity.unit().in_shown_unit(value);
     errors[2].length(quantity)?;
     let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, shown);
     let delivered = corrected.unwrap_or(errors[2]);
-    let (measured, mut residual) = (delivered.measured(quantity), delivered.vector(quantity).map(shown));
+    let (measured, mut residual) =
+        (delivered.measured_components(quantity), delivered.vector(quantity).map(shown));
     residual.iter_mut().zip(measured).filter(|(_, is)| !is).for_each(|(value, _)| *value = f64::NAN);
     let components = residual.as_slice().get(..quantity.components()).unwrap_or_default();
     Some(ModelErrors::new(errors.map(length), components))

@@ -10,7 +10,7 @@ use super::rows::{
 };
 use super::source::RowSource;
 use poecal_calibrate::Calibration;
-use poecal_model::measurement::{Dataset, Measured, Quantity};
+use poecal_model::measurement::{Dataset, MeasuredQuantities, Quantity};
 use poecal_numerics::threads;
 use poecal_storage::csv_text::cell;
 use poecal_storage::numbers::push_number;
@@ -72,7 +72,7 @@ pub(crate) fn in_pieces<T: Send, E: Send>(
     let mut firsts = (0..rows).step_by(PIECE * TOGETHER);
     let mut made = firsts.next().map(some).unwrap_or_default();
     for first in firsts {
-        let (taken, next) = threads::both(|| made.into_iter().try_for_each(&mut take), || some(first));
+        let (taken, next) = threads::run_both(|| made.into_iter().try_for_each(&mut take), || some(first));
         taken?;
         made = next;
     }
@@ -144,7 +144,7 @@ const _: () = assert!(EMPTY.len() == MODELS + 1 + Quantity::MOST_COMPONENTS);
 fn push_errors(
     out: &mut String,
     (quantity, has_corrected): (Quantity, bool),
-    errors: &Measured<ModelErrors>,
+    errors: &MeasuredQuantities<ModelErrors>,
 ) {
     let cells = MODELS + usize::from(has_corrected) + quantity.components();
     let mut empty = cells;

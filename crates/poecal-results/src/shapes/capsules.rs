@@ -73,7 +73,7 @@ fn capsules(urdf: &UrdfDocument, path: &Path) -> (Vec<Capsule>, Vec<String>) {
         let joint = body.joint().and_then(|joint| urdf.robot().joints.get(joint));
         let own: Pose = joint.map_or(base_from_shape, |joint| joint.frame.inverse() * base_from_shape);
         let points: Vec<Vector3<f64>> = points.iter().map(|it| own.rotation * it + own.translation).collect();
-        found.extend(Capsule::around(&link, body, &points, grown));
+        found.extend(Capsule::enclosing(&link, body, &points, grown));
     }
     if found.iter().all(|it| it.body == Body::Base) {
         found.clear();

@@ -5,17 +5,17 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::collector::{Collector, Reason, Triangles};
+use super::collector::{Collector, MeshReason, Triangles};
 use poecal_storage::xml::parsed;
 
 /// Most levels of nested nodes.
 const DEEPEST: usize = 64;
 
 /// The first three rows of a transformation.
-type Rows = [[f64; 4]; 3];
-const STILL: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+type TransformRows = [[f64; 4]; 3];
+const STILL: TransformRows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Reason> {
+pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, MeshReason> {
     let document = parsed(text, Path::new("mesh"), "COLLADA").map_err(|error| {
         // The sentence without the name of a file, which is stated before.
         error.to_string().lines().next().unwrap_or_default().trim_start_matches("mesh:").trim().to_owned()
@@ -29,10 +29,10 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Re
         .find_map(|unit| number(unit, "meter"));
     let metre = metre.filter(|metre| *metre > 0.0).unwrap_or(1.0);
     let mut library = Library::from_root(root);
-    let mut instances: Vec<(Node, Rows)> = root
+    let mut instances: Vec<(Node, TransformRows)> = root
         .descendants()
         .filter(|node| is(*node, "instance_geometry"))
-        .filter_map(|node| Some((library.named(node.attribute("url")?)?, place(node)?)))
+        .filter_map(|node| Some((library.find_by_url(node.attribute("url")?)?, place(node)?)))
         .collect();
     if instances.is_empty() {
         instances =
@@ -41,7 +41,7 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Re
     for (geometry, rows) in instances {
         library.add(geometry, &rows.map(|row| row.map(|value| value * metre)), &mut into)?;
     }
-    into.finished()
+    into.into_triangles()
 }
 
 fn is(node: Node, name: &str) -> bool {
@@ -73,15 +73,15 @@ impl<'a> Library<'a> {
         Library { by_id, places: BTreeMap::new() }
     }
 
-    fn named(&self, url: &str) -> Option<Node<'a, 'a>> {
+    fn find_by_url(&self, url: &str) -> Option<Node<'a, 'a>> {
         self.by_id.get(url.strip_prefix('#')?).copied()
     }
 
     /// Positions of the vertices to which an input of `VERTEX` refers.
     fn places(&mut self, url: &str) -> Option<&[[f64; 3]]> {
-        let vertices = self.named(url)?;
+        let vertices = self.find_by_url(url)?;
         let position = children(vertices, "input").find(|it| it.attribute("semantic") == Some("POSITION"))?;
-        let source = self.named(position.attribute("source")?)?;
+        let source = self.find_by_url(position.attribute("source")?)?;
         let id = source.attribute("id")?;
         if !self.places.contains_key(id) {
             let floats = numbers(children(source, "float_array").next()?);
@@ -94,7 +94,12 @@ impl<'a> Library<'a> {
     }
 
     /// Adds the faces of a geometry.
-    fn add(&mut self, geometry: Node<'a, 'a>, rows: &Rows, into: &mut Collector) -> Result<(), Reason> {
+    fn add(
+        &mut self,
+        geometry: Node<'a, 'a>,
+        rows: &TransformRows,
+        into: &mut Collector,
+    ) -> Result<(), MeshReason> {
         let forms = children(geometry, "mesh").flat_map(|mesh| mesh.children());
         for faces in forms.filter(|node| ["triangles", "polylist", "polygons"].iter().any(|it| is(*node, it)))
         {
@@ -115,7 +120,10 @@ impl<'a> Library<'a> {
                     .chunks(stride)
                     .filter_map(|corner| corner.get(*first))
                     .map(|&index| {
-                        places.get(index as usize).filter(|_| index >= 0.0).map(|place| moved(rows, place))
+                        places
+                            .get(index as usize)
+                            .filter(|_| index >= 0.0)
+                            .map(|place| transform_place(rows, place))
                     })
                     .collect::<Option<_>>()
                     .ok_or("a face of it names a corner that is not there")?;
@@ -138,14 +146,14 @@ impl<'a> Library<'a> {
 }
 
 /// The transformation of an instance by the nodes above it; `None` if they are too many.
-fn place(instance: Node) -> Option<Rows> {
+fn place(instance: Node) -> Option<TransformRows> {
     let above: Vec<Node> = instance.ancestors().filter(|node| is(*node, "node")).take(DEEPEST + 1).collect();
     let steps = above.iter().rev().flat_map(|node| node.children().filter(Node::is_element)).filter_map(step);
     (above.len() <= DEEPEST).then(|| steps.fold(STILL, |all, next| product(&all, &next)))
 }
 
 /// One step of a node's transformation.
-fn step(element: Node) -> Option<Rows> {
+fn step(element: Node) -> Option<TransformRows> {
     let name = element.tag_name().name();
     if !["matrix", "translate", "rotate", "scale"].contains(&name) {
         return None;
@@ -171,7 +179,7 @@ fn step(element: Node) -> Option<Rows> {
     }
 }
 
-fn product(a: &Rows, b: &Rows) -> Rows {
+fn product(a: &TransformRows, b: &TransformRows) -> TransformRows {
     let sum = |row: &[f64; 4], column: usize| (0..3).map(|k| row[k] * b[k][column]).sum::<f64>();
     a.map(|row| {
         let [x, y, z, t] = [0, 1, 2, 3].map(|column| sum(&row, column));
@@ -179,7 +187,7 @@ fn product(a: &Rows, b: &Rows) -> Rows {
     })
 }
 
-fn moved(rows: &Rows, place: &[f64; 3]) -> [f64; 3] {
+fn transform_place(rows: &TransformRows, place: &[f64; 3]) -> [f64; 3] {
     rows.map(|row| row[0] * place[0] + row[1] * place[1] + row[2] * place[2] + row[3])
 }
 

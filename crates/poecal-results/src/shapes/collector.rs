@@ -9,7 +9,7 @@ const FAR: f64 = 1e4;
 pub(crate) type Triangles = Vec<[[f32; 3]; 3]>;
 
 /// Reason why a mesh cannot be drawn, in words that follow "not drawn: ".
-pub(crate) type Reason = String;
+pub(crate) type MeshReason = String;
 
 /// Collects triangles up to a number, scaled.
 pub(crate) struct Collector {
@@ -24,7 +24,7 @@ impl Collector {
     }
 
     /// Adds a triangle. One with a vertex that is no position is left out.
-    pub(crate) fn add(&mut self, corners: [[f64; 3]; 3]) -> Result<(), Reason> {
+    pub(crate) fn add(&mut self, corners: [[f64; 3]; 3]) -> Result<(), MeshReason> {
         if self.found.len() >= self.most {
             return Err(format!("with the others it has more than {MOST_TRIANGLES} triangles"));
         }
@@ -36,7 +36,7 @@ impl Collector {
     }
 
     /// Adds a polygon as triangles about its first vertex.
-    pub(crate) fn fan(&mut self, corners: &[[f64; 3]]) -> Result<(), Reason> {
+    pub(crate) fn fan(&mut self, corners: &[[f64; 3]]) -> Result<(), MeshReason> {
         for pair in corners.get(1..).unwrap_or_default().windows(2) {
             if let (Some(&first), &[second, third]) = (corners.first(), pair) {
                 self.add([first, second, third])?;
@@ -46,7 +46,7 @@ impl Collector {
     }
 
     /// The triangles; an error if there are none.
-    pub(crate) fn finished(self) -> Result<Triangles, Reason> {
+    pub(crate) fn into_triangles(self) -> Result<Triangles, MeshReason> {
         if self.found.is_empty() { Err("found no triangles in it".to_owned()) } else { Ok(self.found) }
     }
 }

@@ -26,7 +26,7 @@ impl Folders {
     pub(crate) fn find(&self, name: &str) -> Option<PathBuf> {
         let packaged = ["package://", "model://"].iter().find_map(|scheme| name.strip_prefix(scheme));
         if let Some(rest) = packaged {
-            return self.packaged(rest);
+            return self.find_in_package(rest);
         }
         let plain = name.strip_prefix("file://").unwrap_or(name);
         if plain.contains("://") {
@@ -40,7 +40,7 @@ impl Folders {
             .find(|path| is_file(path))
     }
 
-    fn packaged(&self, rest: &str) -> Option<PathBuf> {
+    fn find_in_package(&self, rest: &str) -> Option<PathBuf> {
         let (package, inner) = rest.split_once('/')?;
         let places = self.ways.iter().flatten().flat_map(|folder| {
             let own = folder.file_name().is_some_and(|name| name == package).then(|| folder.join(inner));
@@ -52,16 +52,16 @@ impl Folders {
 
 /// A folder and its ancestors, from the root's names; the folder itself need not exist.
 fn way(folder: &Path) -> Option<Vec<PathBuf>> {
-    let disk = disk::here();
+    let disk = disk::current_disk();
     let named =
         |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() };
-    let actual = disk.actual(&named(folder)).ok().or_else(|| {
-        let above = disk.actual(&named(folder.parent()?)).ok()?;
+    let actual = disk.canonical_path(&named(folder)).ok().or_else(|| {
+        let above = disk.canonical_path(&named(folder.parent()?)).ok()?;
         Some(above.join(folder.file_name()?))
     })?;
     Some(actual.ancestors().map(Path::to_path_buf).collect())
 }
 
 fn is_file(path: &Path) -> bool {
-    disk::here().follow(path).is_ok_and(|found| found.kind == ObjectKind::File)
+    disk::current_disk().follow(path).is_ok_and(|found| found.kind == ObjectKind::File)
 }

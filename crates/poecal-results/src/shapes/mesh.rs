@@ -3,17 +3,17 @@
 use std::io::Read as _;
 use std::path::Path;
 
-use super::collector::{Collector, Reason, Triangles};
+use super::collector::{Collector, MeshReason, Triangles};
 use super::{collada, obj, stl};
 use poecal_storage::disk;
 
 /// Largest file, bytes.
 const LARGEST: u64 = 64 << 20;
 /// Reads a file.
-pub(crate) fn read(path: &Path, scale: [f64; 3], most: usize) -> Result<Triangles, Reason> {
+pub(crate) fn read(path: &Path, scale: [f64; 3], most: usize) -> Result<Triangles, MeshReason> {
     let mut bytes = Vec::new();
     let unreadable = |error: std::io::Error| format!("the file cannot be read ({error})");
-    disk::here()
+    disk::current_disk()
         .open(path)
         .map_err(unreadable)?
         .take(LARGEST + 1)
@@ -27,7 +27,7 @@ pub(crate) fn read(path: &Path, scale: [f64; 3], most: usize) -> Result<Triangle
 }
 
 /// The triangles of a file's bytes by the ending of its name.
-pub(crate) fn parsed(bytes: &[u8], ending: &str, into: Collector) -> Result<Triangles, Reason> {
+pub(crate) fn parsed(bytes: &[u8], ending: &str, into: Collector) -> Result<Triangles, MeshReason> {
     match ending {
         "stl" => stl::triangles(bytes, into),
         "obj" => obj::triangles(&text(bytes)?, into),
@@ -46,7 +46,7 @@ pub(crate) fn longest_m(mesh: &Triangles) -> f64 {
     (0..3).map(side).fold(0.0, f64::max)
 }
 
-fn text(bytes: &[u8]) -> Result<std::borrow::Cow<'_, str>, Reason> {
+fn text(bytes: &[u8]) -> Result<std::borrow::Cow<'_, str>, MeshReason> {
     if bytes.contains(&0) {
         return Err("the file is no text".to_owned());
     }

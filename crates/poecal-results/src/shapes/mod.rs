@@ -5,10 +5,10 @@ mod collada;
 mod collector;
 mod find;
 mod mesh;
+mod mesh_text;
 mod obj;
 mod simplify;
 mod stl;
-mod written;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,9 +17,9 @@ use self::collector::{MOST_TRIANGLES, Triangles};
 use self::find::Folders;
 
 pub use self::capsules::capsules_of;
+pub use self::mesh_text::Mesh;
 pub use self::simplify::base64;
-use self::simplify::fitted;
-pub use self::written::Mesh;
+use self::simplify::fit_to_size;
 use super::calibration_file::CalibrationFile;
 use poecal_arm::lie::Pose;
 use poecal_formats::urdf::{Geometry, Visual};
@@ -34,7 +34,7 @@ const MOST_ARMS: f64 = 20.0;
 
 /// The form of a shape, metres. Boxes, cylinders (along z) and spheres are about their centres; a mesh has the axes of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Form {
+pub enum ShapeForm {
     /// Its sides.
     Box([f64; 3]),
     /// Radius and length.
@@ -57,7 +57,7 @@ pub struct Shape {
     /// Its pose in the base by the nominal model.
     pub nominal_pose: Pose,
     /// Its form.
-    pub form: Form,
+    pub form: ShapeForm,
 }
 
 /// Shapes of a robot.
@@ -75,7 +75,7 @@ impl Shapes {
     /// Boxes, cylinders and spheres of the URDF that was calibrated, without opening any file. Empty if the model was no URDF.
     #[must_use]
     pub fn from_calibration(file: &CalibrationFile) -> Self {
-        collected(file, &mut |_, _| None)
+        collect_shapes(file, &mut |_, _| None)
     }
 
     /// Shapes with the meshes that the URDF names: STL, OBJ or COLLADA, beside the URDF, or beside the `calibration.json` at `path`. A mesh that is
@@ -87,7 +87,7 @@ impl Shapes {
         let mut known: BTreeMap<(String, [u64; 3]), Option<usize>> = BTreeMap::new();
         let mut triangles = 0;
         let arm_m = file.robot().map_or(f64::INFINITY, |robot| robot.reach_m());
-        let mut shapes = collected(file, &mut |name, scale| {
+        let mut shapes = collect_shapes(file, &mut |name, scale| {
             *known.entry((name.to_owned(), scale.map(f64::to_bits))).or_insert_with(|| {
                 let Some(found) = folders.find(name) else {
                     missing.push(name.to_owned());
@@ -114,7 +114,7 @@ impl Shapes {
                 }
             })
         });
-        shapes.meshes = fitted(&read, MOST_CHARACTERS);
+        shapes.meshes = fit_to_size(&read, MOST_CHARACTERS);
         if let Some(first) = missing.first() {
             let count = missing.len();
             let named: Vec<String> = missing.iter().take(NAMED).map(|name| format!("`{name}`")).collect();
@@ -133,7 +133,7 @@ impl Shapes {
 }
 
 /// The shapes of a file; `mesh` returns the index of a mesh by its name and scale.
-fn collected(file: &CalibrationFile, mesh: &mut dyn FnMut(&str, [f64; 3]) -> Option<usize>) -> Shapes {
+fn collect_shapes(file: &CalibrationFile, mesh: &mut dyn FnMut(&str, [f64; 3]) -> Option<usize>) -> Shapes {
     let path = PathBuf::from(&file.inputs.model);
     let (Ok(Some(urdf)), Ok(robot), Ok(nominal)) =
         (file.original_urdf(&path), file.robot(), file.nominal_robot())
@@ -153,10 +153,10 @@ fn collected(file: &CalibrationFile, mesh: &mut dyn FnMut(&str, [f64; 3]) -> Opt
     };
     let shape = |Visual { link, body, base_from_shape, geometry }| {
         let form = match geometry {
-            Geometry::Box(sides) => Form::Box(sides),
-            Geometry::Cylinder { radius, length } => Form::Cylinder([radius, length]),
-            Geometry::Sphere { radius } => Form::Sphere(radius),
-            Geometry::Mesh { file, scale } => Form::Mesh(mesh(&file, scale)?),
+            Geometry::Box(sides) => ShapeForm::Box(sides),
+            Geometry::Cylinder { radius, length } => ShapeForm::Cylinder([radius, length]),
+            Geometry::Sphere { radius } => ShapeForm::Sphere(radius),
+            Geometry::Mesh { file, scale } => ShapeForm::Mesh(mesh(&file, scale)?),
         };
         let (pose, nominal_pose) = (on(&robot, body, base_from_shape), on(&nominal, body, base_from_shape));
         Some(Shape { link, body, pose, nominal_pose, form })

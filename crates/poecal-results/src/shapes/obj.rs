@@ -1,8 +1,8 @@
 //! Wavefront OBJ: vertices (`v`) and faces (`f`), nothing else.
 
-use super::collector::{Collector, Reason, Triangles};
+use super::collector::{Collector, MeshReason, Triangles};
 
-pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Reason> {
+pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, MeshReason> {
     let (mut places, mut face): (Vec<[f64; 3]>, Vec<[f64; 3]>) = (Vec::new(), Vec::new());
     for (k, line) in text.lines().enumerate() {
         let mut words = line.split_ascii_whitespace();
@@ -30,7 +30,7 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Re
             Some(_) | None => {}
         }
     }
-    into.finished()
+    into.into_triangles()
 }
 
 /// The index of a vertex such as `7/1/2`, from 1, or from the end if it is negative.

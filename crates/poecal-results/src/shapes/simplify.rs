@@ -14,25 +14,25 @@ const COARSER: f32 = std::f32::consts::SQRT_2;
 const COARSEST: f32 = 0.1;
 
 /// Vertices and triangles between them.
-struct Indexed {
+struct IndexedMesh {
     places: Vec<[f32; 3]>,
     corners: Vec<[u32; 3]>,
 }
 
 /// All meshes as texts of at most `most` characters together. If even the coarsest are longer, the last ones are empty.
-pub(crate) fn fitted(meshes: &[Triangles], most: usize) -> Vec<Mesh> {
+pub(crate) fn fit_to_size(meshes: &[Triangles], most: usize) -> Vec<Mesh> {
     let bounds: Vec<([f32; 3], f32)> = meshes.iter().map(bounds).collect();
     let mut cell = 0.0;
     loop {
-        let merged: Vec<Indexed> =
-            meshes.iter().zip(&bounds).map(|(mesh, bounds)| merged(mesh, *bounds, cell)).collect();
+        let merged: Vec<IndexedMesh> =
+            meshes.iter().zip(&bounds).map(|(mesh, bounds)| merge_corners(mesh, *bounds, cell)).collect();
         let length: usize = merged.iter().map(characters).sum();
         if length <= most || cell > COARSEST {
             let mut left = most;
-            let written = |(it, bounds): (&Indexed, &([f32; 3], f32))| {
+            let written = |(it, bounds): (&IndexedMesh, &([f32; 3], f32))| {
                 let fits = characters(it) <= left;
                 left -= if fits { characters(it) } else { 0 };
-                if fits { written(it, *bounds) } else { Mesh::default() }
+                if fits { write_mesh(it, *bounds) } else { Mesh::default() }
             };
             return merged.iter().zip(&bounds).map(written).collect();
         }
@@ -54,7 +54,7 @@ fn bounds(mesh: &Triangles) -> ([f32; 3], f32) {
 }
 
 /// Vertices in one cell merged at their mean; triangles that degenerate are left out.
-fn merged(mesh: &Triangles, (least, step): ([f32; 3], f32), cell: f32) -> Indexed {
+fn merge_corners(mesh: &Triangles, (least, step): ([f32; 3], f32), cell: f32) -> IndexedMesh {
     let side = cell.max(step);
     let mut known: HashMap<[u32; 3], u32> = HashMap::new();
     let mut sums: Vec<([f64; 3], f64)> = Vec::new();
@@ -76,11 +76,11 @@ fn merged(mesh: &Triangles, (least, step): ([f32; 3], f32), cell: f32) -> Indexe
             corners.push(indices);
         }
     }
-    used(&sums, corners)
+    drop_unused(&sums, corners)
 }
 
 /// The mesh without unused vertices and repeated triangles.
-fn used(sums: &[([f64; 3], f64)], mut corners: Vec<[u32; 3]>) -> Indexed {
+fn drop_unused(sums: &[([f64; 3], f64)], mut corners: Vec<[u32; 3]>) -> IndexedMesh {
     let mut seen = std::collections::HashSet::new();
     corners.retain(|triangle| {
         let mut sorted = *triangle;
@@ -98,19 +98,19 @@ fn used(sums: &[([f64; 3], f64)], mut corners: Vec<[u32; 3]>) -> Indexed {
         }
         *index = *own;
     }
-    Indexed { places, corners }
+    IndexedMesh { places, corners }
 }
 
-fn is_wide(mesh: &Indexed) -> bool {
+fn is_wide(mesh: &IndexedMesh) -> bool {
     mesh.places.len() > usize::from(u16::MAX) + 1
 }
 
-fn characters(mesh: &Indexed) -> usize {
+fn characters(mesh: &IndexedMesh) -> usize {
     let of = |bytes: usize| bytes.div_ceil(3) * 4;
     of(6 * mesh.places.len()) + of(mesh.corners.len() * if is_wide(mesh) { 12 } else { 6 })
 }
 
-fn written(mesh: &Indexed, (least, step): ([f32; 3], f32)) -> Mesh {
+fn write_mesh(mesh: &IndexedMesh, (least, step): ([f32; 3], f32)) -> Mesh {
     let wide = is_wide(mesh);
     let steps = mesh
         .places
@@ -185,13 +185,13 @@ mod tests {
     #[test]
     fn corners_become_one_and_finer_meshes_coarser_within_the_limit() {
         let mesh = sphere(0.2, 40);
-        let whole = fitted(std::slice::from_ref(&mesh), 1_000_000).remove(0);
+        let whole = fit_to_size(std::slice::from_ref(&mesh), 1_000_000).remove(0);
         // The triangles at the poles have no area.
         assert_eq!(whole.triangles, mesh.len() - 2 * 40);
         assert_eq!(whole.places.len(), (6_usize * (39 * 40 + 2)).div_ceil(3) * 4);
         let fine = [sphere(0.2, 300), sphere(0.1, 200)];
         let most = 60_000;
-        let coarse = fitted(&fine, most);
+        let coarse = fit_to_size(&fine, most);
         let length: usize = coarse.iter().map(|it| it.places.len() + it.corners.len()).sum();
         println!(
             "{} and {} triangles of {} and {}: {length} characters",
@@ -201,10 +201,10 @@ mod tests {
             fine[1].len()
         );
         assert!(length <= most && length > most / 4 && coarse.iter().all(|it| it.triangles > 500));
-        assert_eq!(coarse, fitted(&fine, most));
+        assert_eq!(coarse, fit_to_size(&fine, most));
         // Wide indices for more than 16 bits.
-        assert!(fitted(&fine[..1], 10_000_000)[0].wide);
+        assert!(fit_to_size(&fine[..1], 10_000_000)[0].wide);
         // Nothing fits.
-        assert_eq!(fitted(&fine, 10), [Mesh::default(), Mesh::default()]);
+        assert_eq!(fit_to_size(&fine, 10), [Mesh::default(), Mesh::default()]);
     }
 }

@@ -1,13 +1,13 @@
 //! STL, binary and as text.
 
-use super::collector::{Collector, Reason, Triangles};
+use super::collector::{Collector, MeshReason, Triangles};
 
 /// Bytes before the number of triangles, and of a triangle: its normal, three vertices, and two bytes without a meaning.
 const HEAD: usize = 80;
 const TRIANGLE: usize = 50;
 const NORMAL: usize = 12;
 
-pub(crate) fn triangles(bytes: &[u8], into: Collector) -> Result<Triangles, Reason> {
+pub(crate) fn triangles(bytes: &[u8], into: Collector) -> Result<Triangles, MeshReason> {
     // Some binary files begin with `solid` too: their length decides.
     let count = bytes.get(HEAD..HEAD + 4).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes);
     let binary = bytes.get(HEAD + 4..).unwrap_or_default();
@@ -22,7 +22,7 @@ pub(crate) fn triangles(bytes: &[u8], into: Collector) -> Result<Triangles, Reas
     }
 }
 
-fn of_binary(bytes: &[u8], mut into: Collector) -> Result<Triangles, Reason> {
+fn of_binary(bytes: &[u8], mut into: Collector) -> Result<Triangles, MeshReason> {
     for triangle in bytes.chunks_exact(TRIANGLE) {
         let mut numbers = triangle[NORMAL..].chunks_exact(4).map(|four| {
             let four = <[u8; 4]>::try_from(four).unwrap_or_default();
@@ -31,10 +31,10 @@ fn of_binary(bytes: &[u8], mut into: Collector) -> Result<Triangles, Reason> {
         let corners = [(); 3].map(|()| [(); 3].map(|()| numbers.next().unwrap_or(f64::NAN)));
         into.add(corners)?;
     }
-    into.finished()
+    into.into_triangles()
 }
 
-fn of_text(bytes: &[u8], mut into: Collector) -> Result<Triangles, Reason> {
+fn of_text(bytes: &[u8], mut into: Collector) -> Result<Triangles, MeshReason> {
     let text = String::from_utf8_lossy(bytes);
     let mut corners = Vec::new();
     for (k, line) in text.lines().enumerate() {
@@ -54,7 +54,7 @@ fn of_text(bytes: &[u8], mut into: Collector) -> Result<Triangles, Reason> {
             Some(_) | None => {}
         }
     }
-    into.finished()
+    into.into_triangles()
 }
 
 #[cfg(test)]

@@ -6,14 +6,14 @@ use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::explain::{Evidence, Level, Tests, leave_unseen_out, ratio};
-use super::hypotheses::{free, hypotheses};
-use super::model::Model;
+use super::explain::{HypothesisTests, NoiseLevel, ProjectedChanges, leave_unseen_out, ratio};
+use super::hypotheses::{find_free_columns, hypotheses};
+use super::model::VisitModel;
 use super::options::TrackOptions;
-use super::pairs::Changes;
+use super::pairs::VisitChanges;
 use super::visit::Visit;
 use poecal_model::measurement::{Dataset, Quantity};
-use poecal_model::simulate::random::uniform;
+use poecal_model::simulate::random::uniform_number;
 use poecal_numerics::error::Result;
 use poecal_numerics::linalg;
 
@@ -29,7 +29,7 @@ const UNKNOWN: f64 = 1.5;
 
 /// Covariance of the errors of predictions and measurements of some numbers: of the calibration's unknowns, of its stated model error (common to all
 /// targets of a configuration), and of noise.
-fn covariance(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<DMatrix<f64>> {
+fn covariance(model: &VisitModel, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<DMatrix<f64>> {
     let numbers: Vec<usize> =
         rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
     let entry = model.file.uncertainty.as_ref()?;
@@ -65,7 +65,7 @@ fn configurations(data: &Dataset) -> Vec<Vec<u32>> {
 }
 
 /// Changes of some rows from the model's prediction, in its standard deviations; `None` if the calibration states no uncertainty.
-fn of_rows(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<Changes> {
+fn of_rows(model: &VisitModel, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<VisitChanges> {
     let numbers: Vec<usize> =
         rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
     let all = covariance(model, visit, rows, groups)?;
@@ -83,8 +83,8 @@ fn of_rows(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Opti
     let mut both = DMatrix::zeros(numbers.len(), k + 1);
     both.columns_mut(0, k).copy_from(&jacobian);
     both.set_column(k, &residual);
-    let both = linalg::whitened(all, &both)?;
-    Some(Changes {
+    let both = linalg::whiten_columns(all, &both)?;
+    Some(VisitChanges {
         residual: both.column(k).into_owned(),
         jacobian: both.columns(0, k).into_owned(),
         sigma,
@@ -100,29 +100,29 @@ fn some_of(all: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
 }
 
 /// Rows of groups in sequence, with the group of each row.
-fn grouped(configurations: &[Vec<u32>]) -> (Vec<u32>, Vec<usize>) {
+fn group_rows(configurations: &[Vec<u32>]) -> (Vec<u32>, Vec<usize>) {
     let each =
         configurations.iter().enumerate().flat_map(|(group, rows)| rows.iter().map(move |row| (*row, group)));
     each.unzip()
 }
 
 /// Changes of a visit from the model's prediction.
-pub(crate) fn changes(model: &Model, visit: &Visit, data: &Dataset) -> Option<Changes> {
-    let (rows, groups) = grouped(&some_of(configurations(data)));
+pub(crate) fn changes(model: &VisitModel, visit: &Visit, data: &Dataset) -> Option<VisitChanges> {
+    let (rows, groups) = group_rows(&some_of(configurations(data)));
     of_rows(model, visit, &rows, &groups)
 }
 
 /// The level of the model's errors: the value that visits of as many configurations, drawn from the rows of the calibration, rarely exceed.
 pub(crate) fn level(
-    model: &Model,
+    model: &VisitModel,
     earlier: Option<(&Visit, &Dataset)>,
     count: usize,
     options: &TrackOptions,
-) -> Result<(Level, bool)> {
-    let Some((visit, data)) = earlier else { return Ok((Level::Known(UNKNOWN * UNKNOWN), false)) };
+) -> Result<(NoiseLevel, bool)> {
+    let Some((visit, data)) = earlier else { return Ok((NoiseLevel::Known(UNKNOWN * UNKNOWN), false)) };
     let (all, count) = (configurations(data), count.min(MOST));
     if all.len() < 2 * count {
-        return Ok((Level::Known(UNKNOWN * UNKNOWN), false));
+        return Ok((NoiseLevel::Known(UNKNOWN * UNKNOWN), false));
     }
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let mut ratios = Vec::with_capacity(DRAWN);
@@ -131,16 +131,17 @@ pub(crate) fn level(
     for _ in 0..DRAWN {
         let mut chosen = BTreeSet::new();
         while chosen.len() < count {
-            let drawn = (uniform(&mut generator) * all.len() as f64) as usize;
+            let drawn = (uniform_number(&mut generator) * all.len() as f64) as usize;
             chosen.insert(drawn.min(all.len() - 1));
         }
         let some: Vec<Vec<u32>> = chosen.iter().map(|at| all[*at].clone()).collect();
-        let (rows, groups) = grouped(&some);
+        let (rows, groups) = group_rows(&some);
         let Some(found) = of_rows(model, &as_anew, &rows, &groups) else { continue };
-        let evidence = Evidence::new(&found.residual, &free(&found.jacobian, &as_anew, options));
+        let evidence =
+            ProjectedChanges::new(&found.residual, &find_free_columns(&found.jacobian, &as_anew, options));
         let mut hypotheses = hypotheses(&found.jacobian, &as_anew, options);
-        leave_unseen_out(&mut hypotheses, &evidence, Level::Known(1.0));
-        let tests = Tests::new(&hypotheses);
+        leave_unseen_out(&mut hypotheses, &evidence, NoiseLevel::Known(1.0));
+        let tests = HypothesisTests::new(&hypotheses);
         ratios.push(ratio(&evidence, &hypotheses, &tests));
     }
     ratios.sort_by(f64::total_cmp);
@@ -148,20 +149,20 @@ pub(crate) fn level(
     let (chance, beyond) = if model.is_corrected { (CHANCE, 1.0) } else { (0.0, OF_GEOMETRY) };
     let at = ((1.0 - chance) * ratios.len() as f64) as usize;
     let found = ratios.get(at.min(ratios.len().saturating_sub(1))).copied().unwrap_or(1.0);
-    Ok((Level::Known(found.max(1.0) * beyond * shrunk(model, visit)), true))
+    Ok((NoiseLevel::Known(found.max(1.0) * beyond * shrinkage_factor(model, visit)), true))
 }
 
 /// Ratio of squared errors of rows outside the calibration to those of its own rows.
-fn shrunk(model: &Model, visit: &Visit) -> f64 {
+fn shrinkage_factor(model: &VisitModel, visit: &Visit) -> f64 {
     let accuracy = &model.file.accuracy;
     let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);
     let corrected = set.corrected.as_ref().filter(|_| model.is_corrected);
-    let Some((quantity, _)) = corrected.unwrap_or(&set.calibrated).leading() else { return 1.0 };
+    let Some((quantity, _)) = corrected.unwrap_or(&set.calibrated).leading_value() else { return 1.0 };
     let rms = model.own_rms();
     let own = visit.residual.iter().zip(&visit.quantities).filter(|(_, it)| **it == quantity);
     let (squares, count) =
         own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
     let components = quantity.components() as f64;
-    let own = quantity.unit().shown((components * squares / f64::max(count, 1.0)).sqrt());
+    let own = quantity.unit().in_shown_unit((components * squares / f64::max(count, 1.0)).sqrt());
     if own > 0.0 { (rms / own).powi(2).max(1.0) } else { 1.0 }
 }

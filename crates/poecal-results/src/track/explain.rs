@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::options::{MOST_M, MOST_RAD};
-use super::visit::{Columns, Of};
+use super::visit::{ChangeColumns, ColumnSubject};
 use poecal_numerics::distributions::{f_quantile, mean_square_quantile};
 use poecal_numerics::linalg;
 
@@ -23,7 +23,7 @@ const SHOWN: f64 = 5.0;
 
 /// A kind of explanation, in the order in which they are tried: the simplest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ExplanationKind {
     /// The device at a station.
     Device,
     /// The tool with all targets.
@@ -57,10 +57,10 @@ pub struct Size {
 
 /// A motion that may explain changes, with its derivatives in standard deviations.
 #[derive(Clone, Debug)]
-pub(crate) struct Hypothesis {
-    pub(crate) kind: Kind,
+pub(crate) struct MotionHypothesis {
+    pub(crate) kind: ExplanationKind,
     /// Subjects of its columns.
-    pub(crate) of: Vec<Of>,
+    pub(crate) of: Vec<ColumnSubject>,
     pub(crate) columns: DMatrix<f64>,
     /// For each unknown, true if it is an angle.
     pub(crate) turns: Vec<bool>,
@@ -70,7 +70,7 @@ pub(crate) struct Hypothesis {
 
 /// Result of one hypothesis.
 #[derive(Clone, Debug)]
-pub(crate) struct Tried {
+pub(crate) struct TriedHypothesis {
     /// Its index.
     pub(crate) at: usize,
     /// Number of unknowns that are seen beside the free ones.
@@ -85,7 +85,7 @@ pub(crate) struct Tried {
 
 /// The level of the noise: knowledge of the variance of a number, in units of the one by which numbers are whitened.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Level {
+pub(crate) enum NoiseLevel {
     /// Known: stated, or estimated from many rows.
     Known(f64),
     /// Sum of squares of repeats, and their degrees of freedom; the remaining changes add to the estimate.
@@ -94,11 +94,11 @@ pub(crate) enum Level {
 
 /// Result of all hypotheses.
 #[derive(Clone, Debug)]
-pub(crate) struct Verdict {
+pub(crate) struct HypothesisVerdict {
     /// The best explanation, if the changes are more than noise.
-    pub(crate) best: Option<Tried>,
+    pub(crate) best: Option<TriedHypothesis>,
     /// Others that explain them nearly as well.
-    pub(crate) nearly: Vec<Tried>,
+    pub(crate) nearly: Vec<TriedHypothesis>,
     /// Variance of a number, and its degrees of freedom.
     pub(crate) variance: f64,
     pub(crate) freedom: f64,
@@ -109,7 +109,7 @@ pub(crate) struct Verdict {
 }
 
 /// Changes with the free unknowns projected out.
-pub(crate) struct Evidence {
+pub(crate) struct ProjectedChanges {
     /// Orthonormal basis of the columns of the free unknowns.
     free: DMatrix<f64>,
     residual: DVector<f64>,
@@ -117,7 +117,7 @@ pub(crate) struct Evidence {
 }
 
 /// Orthonormal basis of the span of some columns, and the steps of these that form it: `Q = C S`.
-fn spanned(columns: &DMatrix<f64>, before: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
+fn span_columns(columns: &DMatrix<f64>, before: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
     let k = columns.ncols();
     let unit: Vec<f64> = before.iter().map(|norm| if *norm > 0.0 { 1.0 / norm } else { 0.0 }).collect();
     let gram = columns.tr_mul(columns);
@@ -137,31 +137,31 @@ fn norms(columns: &DMatrix<f64>) -> Vec<f64> {
     columns.column_iter().map(|it| it.norm()).collect()
 }
 
-impl Evidence {
+impl ProjectedChanges {
     /// Evidence of whitened changes beside columns of the free unknowns.
     pub(crate) fn new(residual: &DVector<f64>, free: &DMatrix<f64>) -> Self {
-        let (free, _) = spanned(free, &norms(free));
+        let (free, _) = span_columns(free, &norms(free));
         let residual = residual - &free * free.tr_mul(residual);
-        Evidence { numbers: residual.len() as f64, free, residual }
+        ProjectedChanges { numbers: residual.len() as f64, free, residual }
     }
 
     /// Sum of squares that remains, and its degrees of freedom.
-    pub(crate) fn left(&self) -> (f64, f64) {
+    pub(crate) fn remaining_squares(&self) -> (f64, f64) {
         (self.residual.norm_squared(), self.numbers - self.free.ncols() as f64)
     }
 
     /// Orthonormal basis of the part of columns that the free unknowns leave, and the steps that form it.
-    fn beside(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    fn project_out_free(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
         let own = columns - &self.free * self.free.tr_mul(columns);
-        spanned(&own, &norms(columns))
+        span_columns(&own, &norms(columns))
     }
 
     /// Result of a hypothesis; `None` if nothing of it is seen.
-    pub(crate) fn tried(&self, at: usize, hypothesis: &Hypothesis) -> Option<Tried> {
+    pub(crate) fn try_hypothesis(&self, at: usize, hypothesis: &MotionHypothesis) -> Option<TriedHypothesis> {
         if !hypothesis.is_candidate {
             return None;
         }
-        let (own, steps) = self.beside(&hypothesis.columns);
+        let (own, steps) = self.project_out_free(&hypothesis.columns);
         if own.ncols() == 0 {
             return None;
         }
@@ -170,12 +170,12 @@ impl Evidence {
         let sigma = steps.row_iter().map(|row| row.norm());
         let step = step.iter().copied().zip(sigma).collect();
         let covariance = &steps * steps.transpose();
-        Some(Tried { at, rank: own.ncols(), gain: along.norm_squared(), step, covariance })
+        Some(TriedHypothesis { at, rank: own.ncols(), gain: along.norm_squared(), step, covariance })
     }
 
     /// The unknowns of some columns, each with its standard deviation at level 1; `None` if they are not all seen.
     pub(crate) fn steps(&self, columns: &DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
-        let (own, steps) = self.beside(columns);
+        let (own, steps) = self.project_out_free(columns);
         let step = &steps * own.tr_mul(&self.residual);
         let all = step.iter().zip(steps.row_iter()).map(|(value, row)| (*value, row.norm()));
         (own.ncols() == columns.ncols()).then(|| all.collect())
@@ -183,44 +183,48 @@ impl Evidence {
 
     /// Standard deviation at level 1 of the only unknown of some columns; infinite if it is not seen.
     pub(crate) fn sigma(&self, column: &DMatrix<f64>) -> f64 {
-        let (_, steps) = self.beside(column);
+        let (_, steps) = self.project_out_free(column);
         if steps.ncols() == 0 { f64::INFINITY } else { steps.row(0).norm() }
     }
 }
 
 /// Excludes zeros of joints that are not seen, and pairs with them: their shift would exceed the linear range before it became visible.
-pub(crate) fn leave_unseen_out(hypotheses: &mut [Hypothesis], evidence: &Evidence, level: Level) {
+pub(crate) fn leave_unseen_out(
+    hypotheses: &mut [MotionHypothesis],
+    evidence: &ProjectedChanges,
+    level: NoiseLevel,
+) {
     let variance = match level {
-        Level::Known(variance) => variance,
-        Level::Found(..) => 1.0,
+        NoiseLevel::Known(variance) => variance,
+        NoiseLevel::Found(..) => 1.0,
     };
-    let is_unseen = |it: &Hypothesis| {
+    let is_unseen = |it: &MotionHypothesis| {
         let most = if it.turns.first() == Some(&true) { MOST_RAD } else { MOST_M };
         SHOWN * variance.sqrt() * evidence.sigma(&it.columns) > most
     };
-    let unseen = hypotheses.iter().filter(|it| it.kind == Kind::Zero && is_unseen(it));
-    let unseen: Vec<Of> = unseen.flat_map(|it| it.of.clone()).collect();
-    let own = |it: &Hypothesis| matches!(it.kind, Kind::Zero | Kind::TwoZeros);
+    let unseen = hypotheses.iter().filter(|it| it.kind == ExplanationKind::Zero && is_unseen(it));
+    let unseen: Vec<ColumnSubject> = unseen.flat_map(|it| it.of.clone()).collect();
+    let own = |it: &MotionHypothesis| matches!(it.kind, ExplanationKind::Zero | ExplanationKind::TwoZeros);
     let all = hypotheses.iter_mut().filter(|it| own(it) && it.of.iter().any(|of| unseen.contains(of)));
     all.for_each(|it| it.is_candidate = false);
 }
 
 /// Critical gains of the hypotheses.
-pub(crate) struct Tests {
+pub(crate) struct HypothesisTests {
     /// Significance level of each hypothesis.
     chance: Vec<f64>,
 }
 
-impl Tests {
+impl HypothesisTests {
     /// Tests with the same share of the significance level for each kind, and within a kind for each hypothesis (Bonferroni).
-    pub(crate) fn new(hypotheses: &[Hypothesis]) -> Self {
+    pub(crate) fn new(hypotheses: &[MotionHypothesis]) -> Self {
         let candidates = || hypotheses.iter().filter(|it| it.is_candidate);
-        let of = |kind: Kind| candidates().filter(move |it| it.kind == kind).count().max(1) as f64;
-        let mut kinds: Vec<Kind> = candidates().map(|it| it.kind).collect();
+        let of = |kind: ExplanationKind| candidates().filter(move |it| it.kind == kind).count().max(1) as f64;
+        let mut kinds: Vec<ExplanationKind> = candidates().map(|it| it.kind).collect();
         kinds.sort_unstable();
         kinds.dedup();
         let kinds = kinds.len().max(1) as f64;
-        Tests { chance: hypotheses.iter().map(|it| CHANCE / kinds / of(it.kind)).collect() }
+        HypothesisTests { chance: hypotheses.iter().map(|it| CHANCE / kinds / of(it.kind)).collect() }
     }
 
     /// Gain of so many unknowns, in variances, that noise exceeds with the significance level of a hypothesis.
@@ -231,12 +235,12 @@ impl Tests {
     }
 }
 
-impl Level {
+impl NoiseLevel {
     /// Variance of a number with such a remaining sum of squares, and its degrees of freedom.
     fn variance(self, (squares, freedom): (f64, f64)) -> (f64, f64) {
         match self {
-            Level::Known(variance) => (variance, KNOWN),
-            Level::Found(own, count) => {
+            NoiseLevel::Known(variance) => (variance, KNOWN),
+            NoiseLevel::Found(own, count) => {
                 let all = (count + freedom).max(1.0);
                 (((own + squares) / all).max(f64::MIN_POSITIVE), all)
             }
@@ -245,8 +249,12 @@ impl Level {
 }
 
 /// The largest ratio of any hypothesis' gain to its critical gain for noise of variance 1.
-pub(crate) fn ratio(evidence: &Evidence, hypotheses: &[Hypothesis], tests: &Tests) -> f64 {
-    let tried = hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.tried(at, it));
+pub(crate) fn ratio(
+    evidence: &ProjectedChanges,
+    hypotheses: &[MotionHypothesis],
+    tests: &HypothesisTests,
+) -> f64 {
+    let tried = hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.try_hypothesis(at, it));
     tried.map(|it| it.gain / tests.quantile(it.at, it.rank, KNOWN)).fold(0.0, f64::max)
 }
 
@@ -257,17 +265,17 @@ pub(crate) fn is_noise(squares: f64, freedom: f64, variance: f64) -> bool {
 
 /// The simplest sufficient explanation.
 pub(crate) fn explain(
-    evidence: &Evidence,
-    hypotheses: &[Hypothesis],
-    tests: &Tests,
-    level: Level,
-) -> Verdict {
-    let tried: Vec<Tried> =
-        hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.tried(at, it)).collect();
-    let first = judged(evidence, hypotheses, tests, level, &tried);
-    let Level::Known(stated) = level else { return first };
+    evidence: &ProjectedChanges,
+    hypotheses: &[MotionHypothesis],
+    tests: &HypothesisTests,
+    level: NoiseLevel,
+) -> HypothesisVerdict {
+    let tried: Vec<TriedHypothesis> =
+        hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.try_hypothesis(at, it)).collect();
+    let first = judge_hypotheses(evidence, hypotheses, tests, level, &tried);
+    let NoiseLevel::Known(stated) = level else { return first };
     // The scatter exceeds the stated one: the rows themselves determine it.
-    let (squares, freedom) = evidence.left();
+    let (squares, freedom) = evidence.remaining_squares();
     let (gain, rank) = tried
         .iter()
         .map(|it| (it.gain, it.rank))
@@ -276,26 +284,29 @@ pub(crate) fn explain(
     if freedom < 1.0 || is_noise(squares, freedom, stated) {
         return first;
     }
-    Verdict { is_wider: true, ..judged(evidence, hypotheses, tests, Level::Found(0.0, 0.0), &tried) }
+    HypothesisVerdict {
+        is_wider: true,
+        ..judge_hypotheses(evidence, hypotheses, tests, NoiseLevel::Found(0.0, 0.0), &tried)
+    }
 }
 
-fn judged(
-    evidence: &Evidence,
-    hypotheses: &[Hypothesis],
-    tests: &Tests,
-    level: Level,
-    tried: &[Tried],
-) -> Verdict {
-    let left = evidence.left();
-    let with = |it: &Tried| level.variance((left.0 - it.gain, left.1 - it.rank as f64));
+fn judge_hypotheses(
+    evidence: &ProjectedChanges,
+    hypotheses: &[MotionHypothesis],
+    tests: &HypothesisTests,
+    level: NoiseLevel,
+    tried: &[TriedHypothesis],
+) -> HypothesisVerdict {
+    let left = evidence.remaining_squares();
+    let with = |it: &TriedHypothesis| level.variance((left.0 - it.gain, left.1 - it.rank as f64));
     // Excess of each over its critical gain, by its own remaining squares.
-    let excess = |it: &Tried| {
+    let excess = |it: &TriedHypothesis| {
         let (variance, freedom) = with(it);
         it.gain / variance / tests.quantile(it.at, it.rank, freedom)
     };
     let ratio = tried.iter().map(excess).fold(0.0, f64::max);
     let nothing = level.variance(left);
-    let found = Verdict {
+    let found = HypothesisVerdict {
         best: None,
         nearly: Vec::new(),
         variance: nothing.0,
@@ -309,10 +320,10 @@ fn judged(
     // All are compared by one variance: that of the explanation with the smallest remaining squares for its unknowns.
     let (variance, freedom) =
         tried.iter().map(with).fold(nothing, |least, it| if it.0 < least.0 { it } else { least });
-    let score = |it: &Tried| it.gain / variance - tests.quantile(it.at, it.rank, freedom);
-    let kind = |it: &Tried| hypotheses[it.at].kind;
-    let is_simple = |it: &&Tried| kind(it) <= Kind::Zero;
-    let most = |a: &&Tried, b: &&Tried| score(a).total_cmp(&score(b));
+    let score = |it: &TriedHypothesis| it.gain / variance - tests.quantile(it.at, it.rank, freedom);
+    let kind = |it: &TriedHypothesis| hypotheses[it.at].kind;
+    let is_simple = |it: &&TriedHypothesis| kind(it) <= ExplanationKind::Zero;
+    let most = |a: &&TriedHypothesis, b: &&TriedHypothesis| score(a).total_cmp(&score(b));
     let mut best = tried.iter().filter(is_simple).max_by(most);
     // A richer explanation must explain more by its critical gain.
     let richer = tried.iter().filter(|it| !is_simple(it)).filter(|it| {
@@ -323,22 +334,23 @@ fn judged(
     });
     best = richer.max_by(most).or(best);
     let Some(best) = best else { return found };
-    let has_all = |one: &Hypothesis, other: &Hypothesis| other.of.iter().all(|it| one.of.contains(it));
+    let has_all =
+        |one: &MotionHypothesis, other: &MotionHypothesis| other.of.iter().all(|it| one.of.contains(it));
     let nearly =
         tried.iter().filter(|it| it.at != best.at && score(it) > score(best) - NEARLY && excess(it) > 0.5);
     let nearly = nearly
         .filter(|it| !(hypotheses[it.at].of.len() > 1 && has_all(&hypotheses[it.at], &hypotheses[best.at])));
-    let mut nearly: Vec<Tried> = nearly.cloned().collect();
+    let mut nearly: Vec<TriedHypothesis> = nearly.cloned().collect();
     nearly.sort_by(|a, b| score(b).total_cmp(&score(a)));
     let (variance, freedom) = with(best);
-    Verdict { best: Some(best.clone()), nearly, variance, freedom, ..found }
+    HypothesisVerdict { best: Some(best.clone()), nearly, variance, freedom, ..found }
 }
 
 /// Columns by their subjects, in standard deviations.
-pub(crate) fn picked(
+pub(crate) fn pick_columns(
     jacobian: &DMatrix<f64>,
-    columns: &[Columns],
-    wanted: impl Fn(Of) -> bool,
+    columns: &[ChangeColumns],
+    wanted: impl Fn(ColumnSubject) -> bool,
 ) -> DMatrix<f64> {
     let places: Vec<usize> =
         columns.iter().filter(|it| wanted(it.of)).flat_map(|it| it.places.clone()).collect();

@@ -8,25 +8,25 @@
 
 mod by_model;
 mod explain;
-mod found;
 mod hypotheses;
-mod judged;
+mod joint_combinations;
 mod model;
 mod options;
 mod pairs;
 mod repair;
 mod run;
-mod several;
 mod sight;
 mod visit;
+mod visit_judgement;
+mod visit_result;
+mod visit_sentences;
 mod witness;
-mod words;
 
-pub use explain::{Kind, Size};
-pub use found::{Explanation, Tracked};
-pub use judged::Earlier;
-pub use options::{JudgedBy, State, TrackOptions};
-pub use repair::{Repaired, recalibrate};
+pub use explain::{ExplanationKind, Size};
+pub use options::{JudgingBasis, RobotCondition, TrackOptions};
+pub use repair::{RecalibratedJoint, recalibrate};
 pub use run::track;
-pub use sight::{JointSight, Unseen};
+pub use sight::{JointSight, Undetectable};
+pub use visit_judgement::Baseline;
+pub use visit_result::{ChangeExplanation, VisitResult};
 pub use witness::{Witnesses, witnesses};

@@ -8,7 +8,7 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
 /// A delivered model.
-pub(crate) struct Model {
+pub(crate) struct VisitModel {
     /// The file whose entries are those of the delivered model.
     pub(crate) file: CalibrationFile,
     pub(crate) robot: Robot,
@@ -18,10 +18,10 @@ pub(crate) struct Model {
     pub(crate) is_corrected: bool,
 }
 
-impl Model {
+impl VisitModel {
     /// Model of a calibration, with the noise of a visit if that is stated.
     pub(crate) fn from_calibration(file: &CalibrationFile, options: &TrackOptions) -> Result<Self> {
-        let corrected = file.corrected();
+        let corrected = file.corrected_file();
         let is_corrected = corrected.is_some();
         let file = corrected.unwrap_or_else(|| file.clone());
         let robot = file.robot()?;
@@ -36,7 +36,7 @@ impl Model {
             }
         };
         let joints = (0..robot.joints.len()).filter(|&joint| robot.joints[joint].give_of.is_none()).collect();
-        Ok(Model { file, robot, noise, joints, is_corrected })
+        Ok(VisitModel { file, robot, noise, joints, is_corrected })
     }
 
     /// Error of the calibration itself, metres for each coordinate or distance.

@@ -22,7 +22,7 @@ pub struct TrackOptions {
 /// State of the robot since its calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum State {
+pub enum RobotCondition {
     /// The changes are no more than noise.
     Unchanged,
     /// The changes are more than noise.
@@ -32,7 +32,7 @@ pub enum State {
 /// Reference by which the rows were judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum JudgedBy {
+pub enum JudgingBasis {
     /// Earlier rows of the same configurations.
     Repeats,
     /// The delivered model: the corrected one, if there is one.

@@ -16,7 +16,7 @@ const PLACE: usize = 3;
 
 /// Changes of measured numbers between visits, about the model.
 #[derive(Clone, Debug)]
-pub(crate) struct Changes {
+pub(crate) struct VisitChanges {
     /// Measured less predicted in this visit, less the same in the earlier one, in standard deviations.
     pub(crate) residual: DVector<f64>,
     /// Derivatives in those units, by the unknowns of the visit.
@@ -35,7 +35,7 @@ pub(crate) fn groups(data: &Dataset) -> Vec<Vec<u32>> {
         let seen = &data.observations[row as usize];
         (seen.target, seen.station)
     };
-    let mut found = data.alike(&data.all_rows(), SAME_RAD, 1, class);
+    let mut found = data.group_similar(&data.all_rows(), SAME_RAD, 1, class);
     found.sort_unstable();
     found
 }
@@ -81,7 +81,7 @@ fn is_same(a: &Dataset, row: u32, b: &Dataset, other: u32, robot: &Robot) -> boo
             .all(|((x, y), same)| (x - y).abs() <= same)
 }
 
-impl Changes {
+impl VisitChanges {
     /// The largest standard deviation of a number of a position.
     pub(crate) fn largest_sigma(&self) -> f64 {
         self.sigma.iter().copied().fold(0.0, f64::max)
@@ -89,7 +89,7 @@ impl Changes {
 
     /// Changes of a visit from an earlier one; `None` if no row repeats. If another point on the tool is measured, the calibration's uncertainty
     /// moves both points differently, and is part of the changes.
-    pub(crate) fn between(
+    pub(crate) fn from_visits(
         (visit, data): (&Visit, &Dataset),
         (earlier, before): (&Visit, &Dataset),
         robot: &Robot,
@@ -141,7 +141,7 @@ impl Changes {
         if !by_known.is_empty() {
             (residual, jacobian) = weigh_known(&DMatrix::from_rows(&by_known), residual, jacobian)?;
         }
-        Some(Changes {
+        Some(VisitChanges {
             residual,
             jacobian,
             sigma: DVector::from_vec(sigma),
@@ -161,7 +161,7 @@ fn weigh_known(
     let count = jacobian.ncols();
     let mut both = jacobian.insert_column(count, 0.0);
     both.set_column(count, &residual);
-    let both = linalg::whitened(all, &both)?;
+    let both = linalg::whiten_columns(all, &both)?;
     Some((both.column(count).into_owned(), both.columns(0, count).into_owned()))
 }
 

@@ -2,13 +2,15 @@
 
 use nalgebra::DMatrix;
 
-use super::explain::{Evidence, Hypothesis, Kind, Tests, Verdict, explain};
-use super::found::explanation;
-use super::hypotheses::{free, hypotheses};
-use super::judged::{Earlier, Judged};
-use super::model::Model;
-use super::options::{JudgedBy, MOST_RAD, TrackOptions};
-use super::visit::Of;
+use super::explain::{
+    ExplanationKind, HypothesisTests, HypothesisVerdict, MotionHypothesis, ProjectedChanges, explain,
+};
+use super::hypotheses::{find_free_columns, hypotheses};
+use super::model::VisitModel;
+use super::options::{JudgingBasis, MOST_RAD, TrackOptions};
+use super::visit::ColumnSubject;
+use super::visit_judgement::{Baseline, JudgedVisit};
+use super::visit_result::explanation;
 use crate::calibration_file::{
     CalibrationFile, JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart,
 };
@@ -19,13 +21,13 @@ use poecal_numerics::error::{ErrorKind, Result};
 
 /// A calibration with one joint recalibrated.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Repaired {
+pub struct RecalibratedJoint {
     /// The new calibration.
     pub file: CalibrationFile,
     /// The change.
     pub repair: JointRepair,
     /// Reference by which the rows were judged.
-    pub judged_by: JudgedBy,
+    pub judged_by: JudgingBasis,
     /// Further notes, a sentence each.
     pub notes: Vec<String>,
 }
@@ -39,23 +41,23 @@ pub struct Repaired {
 pub fn recalibrate(
     file: &CalibrationFile,
     data: &Dataset,
-    earlier: Option<Earlier<'_>>,
+    earlier: Option<Baseline<'_>>,
     options: &TrackOptions,
     (joint, part): (&str, RepairedPart),
     sources: RecalibrationSources,
-) -> Result<Repaired> {
-    let Judged { model, data, visit, changes, level, judged_by, repeated, notes } =
-        Judged::from_rows(file, data, earlier, options)?;
+) -> Result<RecalibratedJoint> {
+    let JudgedVisit { model, data, visit, changes, level, judged_by, repeated, notes } =
+        JudgedVisit::from_rows(file, data, earlier, options)?;
     let at = find_joint(&model, joint)?;
     let (of, what) = match part {
-        RepairedPart::Zero => (Of::Zero(at), "zero"),
-        RepairedPart::Axis => (Of::Axis(at), "axis"),
+        RepairedPart::Zero => (ColumnSubject::Zero(at), "zero"),
+        RepairedPart::Axis => (ColumnSubject::Axis(at), "axis"),
     };
     let all = hypotheses(&changes.jacobian, &visit, options);
-    let is_own = |it: &&Hypothesis| it.of == [of];
-    let free_columns = free(&changes.jacobian, &visit, options);
-    let evidence = Evidence::new(&changes.residual, &free_columns);
-    let found = all.iter().find(is_own).and_then(|it| Some((it, evidence.tried(0, it)?)));
+    let is_own = |it: &&MotionHypothesis| it.of == [of];
+    let free_columns = find_free_columns(&changes.jacobian, &visit, options);
+    let evidence = ProjectedChanges::new(&changes.residual, &free_columns);
+    let found = all.iter().find(is_own).and_then(|it| Some((it, evidence.try_hypothesis(0, it)?)));
     let Some((hypothesis, tried)) = found.filter(|(it, tried)| tried.rank == it.columns.ncols()) else {
         return ErrorKind::Problem.refuse(format!(
             "found rows that do not show the {what} of joint `{joint}`, expected some that do: measure configurations that `poecal track --plan` chooses, \
@@ -64,9 +66,14 @@ pub fn recalibrate(
     };
     // The remainder must be noise beside it.
     let beside = side_by_side(&free_columns, &hypothesis.columns);
-    let rest: Vec<Hypothesis> =
-        all.iter().filter(|it| it.kind <= Kind::Zero && it.of != [of]).cloned().collect();
-    let verdict = explain(&Evidence::new(&changes.residual, &beside), &rest, &Tests::new(&rest), level);
+    let rest: Vec<MotionHypothesis> =
+        all.iter().filter(|it| it.kind <= ExplanationKind::Zero && it.of != [of]).cloned().collect();
+    let verdict = explain(
+        &ProjectedChanges::new(&changes.residual, &beside),
+        &rest,
+        &HypothesisTests::new(&rest),
+        level,
+    );
     refuse_others(&verdict, &rest, (&model, &data), (what, joint))?;
     let variance = verdict.variance;
     let step: Vec<f64> = tried.step.iter().map(|it| it.0).collect();
@@ -94,11 +101,11 @@ pub fn recalibrate(
         calibration: sources.calibration,
         sha256: sources.sha256,
     };
-    Ok(Repaired { file: file.repaired(&repair, provenance)?, repair, judged_by, notes })
+    Ok(RecalibratedJoint { file: file.with_repair(&repair, provenance)?, repair, judged_by, notes })
 }
 
 /// The joint that is to be recalibrated.
-fn find_joint(model: &Model, joint: &str) -> Result<usize> {
+fn find_joint(model: &VisitModel, joint: &str) -> Result<usize> {
     let own = model.joints.iter().find(|&&at| model.robot.joints[at].name == joint);
     let Some(&at) = own else {
         let names: Vec<&str> = model.joints.iter().map(|&at| model.robot.joints[at].name.as_str()).collect();
@@ -130,9 +137,9 @@ fn axis_twists(axis: &Pose, turns: bool) -> Vec<Twist> {
 
 /// Refuses rows by which something else changed too.
 fn refuse_others(
-    verdict: &Verdict,
-    rest: &[Hypothesis],
-    (model, data): (&Model, &Dataset),
+    verdict: &HypothesisVerdict,
+    rest: &[MotionHypothesis],
+    (model, data): (&VisitModel, &Dataset),
     (what, joint): (&str, &str),
 ) -> Result<()> {
     let Some(other) = &verdict.best else { return Ok(()) };

@@ -2,12 +2,14 @@
 
 use nalgebra::DMatrix;
 
-use super::explain::{Evidence, Hypothesis, Kind, Size, Tests, Verdict};
-use super::hypotheses::free;
-use super::model::Model;
+use super::explain::{
+    ExplanationKind, HypothesisTests, HypothesisVerdict, MotionHypothesis, ProjectedChanges, Size,
+};
+use super::hypotheses::find_free_columns;
+use super::model::VisitModel;
 use super::options::{MOST_M, MOST_RAD, TrackOptions};
-use super::pairs::Changes;
-use super::visit::{Of, Visit};
+use super::pairs::VisitChanges;
+use super::visit::{ColumnSubject, Visit};
 use poecal_model::robot::JointKind;
 
 /// Normal quantile of 95 %.
@@ -15,7 +17,7 @@ const NORMAL: f64 = 1.644_853_627;
 
 /// Reason why the zero of a joint is not seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unseen {
+pub enum Undetectable {
     /// The device was set up anew: its frame absorbs the shift.
     Device,
     /// The tool was mounted anew: its targets absorb the shift.
@@ -38,7 +40,7 @@ pub struct JointSight {
     /// Smallest shift that is detected with a probability of 95 %, radians or metres.
     pub smallest: f64,
     /// Reason why it is not seen at all.
-    pub unseen: Option<Unseen>,
+    pub unseen: Option<Undetectable>,
     /// Estimated shift of its zero beside the explanation. `None` if it is not seen beside that, nothing explains the changes, or nothing was
     /// measured.
     pub shift: Option<Size>,
@@ -46,23 +48,23 @@ pub struct JointSight {
 
 /// Ratio of the smallest shift that is detected with 95 % to its standard deviation. `quantile` is the critical value (a square) with `freedom`
 /// degrees of freedom. The noncentral t has its normal approximation (abramowitz1964, 26.7.10, without its term 1/(4ν)).
-pub(crate) fn smallest(quantile: f64, freedom: f64) -> f64 {
+pub(crate) fn smallest_detectable(quantile: f64, freedom: f64) -> f64 {
     let t = quantile.sqrt();
     t + NORMAL * (1.0 + 0.5 * quantile / freedom.max(1.0)).sqrt()
 }
 
 /// Detectability of all joints.
 pub(crate) fn joints(
-    changes: &Changes,
+    changes: &VisitChanges,
     visit: &Visit,
-    model: &Model,
-    (hypotheses, tests): (&[Hypothesis], &Tests),
+    model: &VisitModel,
+    (hypotheses, tests): (&[MotionHypothesis], &HypothesisTests),
     (variance, freedom): (f64, f64),
     options: &TrackOptions,
 ) -> Vec<JointSight> {
     let beside = |options: &TrackOptions, device_is_known: bool| {
         let visit = Visit { device_is_known, ..visit.clone() };
-        Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options))
+        ProjectedChanges::new(&changes.residual, &find_free_columns(&changes.jacobian, &visit, options))
     };
     let known_tool = TrackOptions { tool_is_anew: false, ..*options };
     let all = [
@@ -71,25 +73,25 @@ pub(crate) fn joints(
         beside(&known_tool, visit.device_is_known),
         beside(&known_tool, true),
     ];
-    let zeros = hypotheses.iter().enumerate().filter(|(_, it)| it.kind == Kind::Zero);
-    let sight = |(at, it): (usize, &Hypothesis)| {
-        let Some(&Of::Zero(index)) = it.of.first() else { return None };
+    let zeros = hypotheses.iter().enumerate().filter(|(_, it)| it.kind == ExplanationKind::Zero);
+    let sight = |(at, it): (usize, &MotionHypothesis)| {
+        let Some(&ColumnSubject::Zero(index)) = it.of.first() else { return None };
         let joint = &model.robot.joints[index];
         let slides = joint.kind == JointKind::Prismatic;
         let most = if slides { MOST_M } else { MOST_RAD };
-        let factor = smallest(tests.quantile(at, 1, freedom), freedom);
-        let sigma = |evidence: &Evidence| variance.sqrt() * evidence.sigma(&it.columns);
+        let factor = smallest_detectable(tests.quantile(at, 1, freedom), freedom);
+        let sigma = |evidence: &ProjectedChanges| variance.sqrt() * evidence.sigma(&it.columns);
         let [own, device, tool, both] = [0, 1, 2, 3].map(|k| sigma(&all[k]));
         // A free device or tool is the reason only if a shift would be clearly visible with it known.
         let is_seen = |sigma: f64| factor * sigma <= if sigma < own { 0.25 * most } else { most };
         let unseen = match () {
             () if is_seen(own) => None,
-            () if !visit.device_is_known && is_seen(device) => Some(Unseen::Device),
-            () if options.tool_is_anew && is_seen(tool) => Some(Unseen::Tool),
+            () if !visit.device_is_known && is_seen(device) => Some(Undetectable::Device),
+            () if options.tool_is_anew && is_seen(tool) => Some(Undetectable::Tool),
             () if (options.tool_is_anew || !visit.device_is_known) && is_seen(both) => {
-                Some(Unseen::DeviceAndTool)
+                Some(Undetectable::DeviceAndTool)
             }
-            () => Some(Unseen::NoMotion),
+            () => Some(Undetectable::NoMotion),
         };
         Some(JointSight {
             joint: joint.name.clone(),
@@ -105,22 +107,26 @@ pub(crate) fn joints(
 
 /// The shift of each joint's zero, in the order of [`joints`], beside the explanation of the changes; for a joint that the explanation names, the
 /// explanation's.
-pub(crate) fn shifts(evidence: &Evidence, hypotheses: &[Hypothesis], verdict: &Verdict) -> Vec<Option<Size>> {
+pub(crate) fn shifts(
+    evidence: &ProjectedChanges,
+    hypotheses: &[MotionHypothesis],
+    verdict: &HypothesisVerdict,
+) -> Vec<Option<Size>> {
     let best = verdict.best.as_ref().and_then(|it| hypotheses.get(it.at));
-    let shift = |zero: &Hypothesis| {
+    let shift = |zero: &MotionHypothesis| {
         // Each zero of an explanation is one of its columns.
         let named = best.and_then(|it| it.of.iter().position(|of| zero.of.contains(of)));
         let beside = best.map_or_else(|| DMatrix::zeros(zero.columns.nrows(), 0), |it| it.columns.clone());
         let at = named.unwrap_or(beside.ncols());
-        let columns = if named.is_some() { beside } else { joined(&beside, &zero.columns) };
+        let columns = if named.is_some() { beside } else { join_columns(&beside, &zero.columns) };
         let &(value, sigma) = evidence.steps(&columns)?.get(at)?;
         Some(Size { value, sigma: verdict.variance.sqrt() * sigma, turns: zero.turns.first() == Some(&true) })
     };
-    hypotheses.iter().filter(|it| it.kind == Kind::Zero).map(shift).collect()
+    hypotheses.iter().filter(|it| it.kind == ExplanationKind::Zero).map(shift).collect()
 }
 
 /// Columns of two matrices side by side.
-fn joined(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+fn join_columns(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = one.clone().resize_horizontally(one.ncols() + other.ncols(), 0.0);
     all.columns_mut(one.ncols(), other.ncols()).copy_from(other);
     all

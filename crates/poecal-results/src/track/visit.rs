@@ -2,14 +2,16 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::model::Model;
+use super::model::VisitModel;
 use super::options::TrackOptions;
 use poecal_arm::lie::Pose;
 use poecal_calibrate::whitened_rows;
-use poecal_fit::parameters::{Parameter, ScrewAxis, Subject, TargetFrame, TargetPlace, ValueTerm};
+use poecal_fit::parameters::{Parameter, ParameterSubject, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal_fit::problem::Problem;
 use poecal_fit::start::{Registration, device_parameter, faces_on_known_planes, register, target_parameters};
-use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session, Stand, delivered};
+use poecal_fit::state::{
+    Estimate, InstrumentMount, Linkage, PackedValues, RowChain, Session, nominal_estimate,
+};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::{Body, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -17,7 +19,7 @@ use poecal_numerics::linalg;
 
 /// Subject of columns of a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Of {
+pub(crate) enum ColumnSubject {
     /// Pose of the device at a station.
     Device(usize),
     /// Pose of a target on the arm.
@@ -34,8 +36,8 @@ pub(crate) enum Of {
 
 /// Columns of one change.
 #[derive(Clone, Debug)]
-pub(crate) struct Columns {
-    pub(crate) of: Of,
+pub(crate) struct ChangeColumns {
+    pub(crate) of: ColumnSubject,
     /// Indices of the columns in the Jacobian.
     pub(crate) places: Vec<usize>,
     /// For each unknown, true if it is an angle; otherwise it is a length or a share.
@@ -54,7 +56,7 @@ pub(crate) struct Visit {
     /// Standard deviation of each number.
     pub(crate) sigma: DVector<f64>,
     pub(crate) quantities: Vec<Quantity>,
-    pub(crate) columns: Vec<Columns>,
+    pub(crate) columns: Vec<ChangeColumns>,
     /// Derivatives by the unknowns of the calibration, transformed so that these are independent with variance 1; `None` without an uncertainty.
     pub(crate) by_known: Option<DMatrix<f64>>,
     /// Each target's pose with all joints at zero, base frame, and the motions of it that its columns are.
@@ -81,7 +83,7 @@ impl Visit {
     /// The rows of some measurements about the model. The frames of the devices are those of the calibration if `device_is_known`, otherwise fitted;
     /// targets are fitted if `tool_is_anew`.
     pub(crate) fn from_measurements(
-        model: &Model,
+        model: &VisitModel,
         original: &Dataset,
         device_is_known: bool,
         options: &TrackOptions,
@@ -99,7 +101,7 @@ impl Visit {
         let devices = if device_is_known { file.devices_of(&data)? } else { Vec::new() };
         let data = faces_on_known_planes(&data, &model.robot, &devices).into_owned();
         let (robot, rows) = (&model.robot, data.all_rows());
-        let packed = Packed::from_dataset(robot, &data);
+        let packed = PackedValues::from_dataset(robot, &data);
         let session = Session::new(robot, &data, &packed, !device_is_known);
         let estimate = place(model, session, (&data, &rows), &devices, options)?;
         let free = unknowns(model, &session, &estimate, &rows);
@@ -114,7 +116,11 @@ impl Visit {
             let place = jacobian.ncols();
             jacobian = jacobian.insert_column(place, 0.0);
             jacobian.set_column(place, &lengths.column(0));
-            columns.push(Columns { of: Of::Lengths, places: vec![place], turns: vec![false] });
+            columns.push(ChangeColumns {
+                of: ColumnSubject::Lengths,
+                places: vec![place],
+                turns: vec![false],
+            });
         }
         let motions = |target: usize| {
             let own = problem.layout().parameters().filter_map(|(parameter, _)| parameter.target_motions());
@@ -139,13 +145,13 @@ impl Visit {
 
 /// The estimate of a visit: devices as in the calibration or, like targets of a tool that was mounted anew, registered.
 fn place(
-    model: &Model,
+    model: &VisitModel,
     session: Session<'_>,
     (data, rows): (&Dataset, &[u32]),
     devices: &[Pose],
     options: &TrackOptions,
 ) -> Result<Estimate> {
-    let mut estimate = delivered(&model.robot, data);
+    let mut estimate = nominal_estimate(&model.robot, data);
     for (station, device) in devices.iter().enumerate() {
         *estimate.device_mut(station) = device.inverse();
     }
@@ -164,17 +170,19 @@ fn place(
 }
 
 /// Scales the columns of a Jacobian to the units of the unknowns, and returns their subjects.
-fn sort_columns(problem: &Problem<'_>, robot: &Robot, jacobian: &mut DMatrix<f64>) -> Vec<Columns> {
+fn sort_columns(problem: &Problem<'_>, robot: &Robot, jacobian: &mut DMatrix<f64>) -> Vec<ChangeColumns> {
     let mut columns = Vec::new();
     for (parameter, places) in problem.layout().parameters() {
         places.iter().for_each(|&(place, scale)| jacobian.column_mut(place).scale_mut(scale));
         let own = places.iter().map(|(place, _)| *place);
         let turns = places.iter().map(|(_, scale)| *scale != 1.0);
         let Some(of) = subject(parameter, robot) else { continue };
-        let known = columns.iter_mut().find(|it: &&mut Columns| it.of == of && matches!(of, Of::Give(_)));
+        let known = columns
+            .iter_mut()
+            .find(|it: &&mut ChangeColumns| it.of == of && matches!(of, ColumnSubject::Give(_)));
         match known {
             Some(give) => (give.places.extend(own), give.turns.extend(turns)).0,
-            None => columns.push(Columns { of, places: own.collect(), turns: turns.collect() }),
+            None => columns.push(ChangeColumns { of, places: own.collect(), turns: turns.collect() }),
         }
     }
     columns
@@ -199,7 +207,8 @@ fn unwhiten(
             quantities.push(channel.quantity);
         }
         let of_places = channels.range(Quantity::Position);
-        let on_base = matches!(estimate.tree.instruments().get(seen.station), Some(Stand::On(Body::Base)));
+        let on_base =
+            matches!(estimate.tree.instruments().get(seen.station), Some(InstrumentMount::On(Body::Base)));
         if of_places.len() == 3 && on_base && seen.noise_shape.is_none() {
             let turn = estimate.device(seen.station).rotation.transpose();
             let first = start + of_places.start;
@@ -242,10 +251,10 @@ fn check_count(registration: &Registration<'_>, data: &Dataset, rows: &[u32]) ->
 }
 
 /// All possible changes.
-fn unknowns(model: &Model, session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Parameter> {
+fn unknowns(model: &VisitModel, session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Parameter> {
     let data = session.data;
     let stations = (0..data.station_count()).filter(|&station| {
-        !data.seen_from(station, rows).is_empty() && estimate.tree.shared(station).is_none()
+        !data.seen_from(station, rows).is_empty() && estimate.tree.shared_target(station).is_none()
     });
     let mut free: Vec<Parameter> = stations.map(|station| device_parameter(data, station, rows)).collect();
     let robot = &model.robot;
@@ -269,21 +278,23 @@ fn unknowns(model: &Model, session: &Session<'_>, estimate: &Estimate, rows: &[u
 }
 
 /// Subject of a parameter.
-fn subject(parameter: &Parameter, robot: &Robot) -> Option<Of> {
+fn subject(parameter: &Parameter, robot: &Robot) -> Option<ColumnSubject> {
     let owner = |joint: usize| robot.joints.get(joint).and_then(|it| it.give_of).unwrap_or(joint);
     Some(match (parameter.model().subject(), parameter.value_term(), parameter.screw_axis()) {
-        (Subject::Instrument(station), ..) => Of::Device(station),
-        (Subject::Target(target), ..) => Of::Target(target),
-        (Subject::Joint(joint), Some(term), _) if term.term == Term::OFFSET => Of::Zero(joint),
-        (Subject::Joint(joint), Some(_), _) => Of::Give(owner(joint)),
-        (Subject::Joint(joint), _, Some(_)) => Of::Axis(joint),
+        (ParameterSubject::Instrument(station), ..) => ColumnSubject::Device(station),
+        (ParameterSubject::Target(target), ..) => ColumnSubject::Target(target),
+        (ParameterSubject::Joint(joint), Some(term), _) if term.term == Term::OFFSET => {
+            ColumnSubject::Zero(joint)
+        }
+        (ParameterSubject::Joint(joint), Some(_), _) => ColumnSubject::Give(owner(joint)),
+        (ParameterSubject::Joint(joint), _, Some(_)) => ColumnSubject::Axis(joint),
         _ => return None,
     })
 }
 
 /// Derivatives of whitened numbers by the unknowns of the calibration, transformed to independence and variance 1.
 fn by_known(
-    model: &Model,
+    model: &VisitModel,
     session: &Session<'_>,
     estimate: &Estimate,
     rows: &[u32],
@@ -293,7 +304,7 @@ fn by_known(
         return Ok(None);
     }
     let names: Vec<Option<&str>> =
-        session.data.targets.iter().map(|name| name.as_deref().or(file.unnamed())).collect();
+        session.data.targets.iter().map(|name| name.as_deref().or(file.unnamed_target())).collect();
     let (found, targets) = file.uncertainty(&names)?;
     // The same unknowns about this visit's estimate: its axes have the frames of the covariance, and its targets their indices.
     let mut about = estimate.clone();
@@ -308,7 +319,8 @@ fn by_known(
                 targets.iter().position(|at| *at == target).map(|own| of_target(parameter, own))
             }
         };
-        let is_device = parameter.is_some_and(|it| matches!(it.model().subject(), Subject::Instrument(_)));
+        let is_device =
+            parameter.is_some_and(|it| matches!(it.model().subject(), ParameterSubject::Instrument(_)));
         if let Some(parameter) = parameter.filter(|_| !is_device) {
             free.push(parameter);
             from.extend(places.iter().map(|(place, _)| *place));
@@ -343,17 +355,18 @@ fn of_target(parameter: &Parameter, target: usize) -> Parameter {
 /// The derivative of whitened numbers by a relative growth of all lengths of the arm: the target's position in the base, through the shifts of the
 /// device.
 fn lengths(
-    columns: &[Columns],
+    columns: &[ChangeColumns],
     jacobian: &DMatrix<f64>,
     starts: &[usize],
-    (data, estimate, packed): (&Dataset, &Estimate, &Packed),
+    (data, estimate, packed): (&Dataset, &Estimate, &PackedValues),
 ) -> Option<DMatrix<f64>> {
     let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
+    let mut chain = RowChain::default();
     let mut found = DMatrix::zeros(jacobian.nrows(), 1);
     for (row, seen) in data.observations.iter().enumerate() {
-        let is_on_base = matches!(estimate.tree.instruments().get(seen.station), Some(Stand::On(Body::Base)));
-        let device = columns.iter().find(|it| it.of == Of::Device(seen.station))?;
+        let is_on_base =
+            matches!(estimate.tree.instruments().get(seen.station), Some(InstrumentMount::On(Body::Base)));
+        let device = columns.iter().find(|it| it.of == ColumnSubject::Device(seen.station))?;
         let shifts =
             device.places.get(..3).filter(|_| is_on_base && !device.turns.iter().take(3).any(|it| *it))?;
         chain.evaluate(&linkage, packed, row, seen);

@@ -6,17 +6,17 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::explain::{Evidence, Level, Tests, leave_unseen_out, picked};
-use super::hypotheses::{free, hypotheses};
-use super::judged::earlier_visit;
-use super::model::Model;
+use super::explain::{HypothesisTests, NoiseLevel, ProjectedChanges, leave_unseen_out, pick_columns};
+use super::hypotheses::{find_free_columns, hypotheses};
+use super::model::VisitModel;
 use super::options::TrackOptions;
-use super::pairs::Changes;
+use super::pairs::VisitChanges;
 use super::sight::{JointSight, joints};
-use super::visit::{Of, Visit};
+use super::visit::{ColumnSubject, Visit};
+use super::visit_judgement::earlier_visit;
 use crate::calibration_file::CalibrationFile;
 use poecal_model::measurement::Dataset;
-use poecal_model::simulate::random::uniform;
+use poecal_model::simulate::random::uniform_number;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::linalg;
 
@@ -76,7 +76,7 @@ impl Candidates {
         ridge(&mut own);
         let beside = sum.view((0, k), (k, n - k)).into_owned();
         let left = sum.view((k, k), (n - k, n - k)).into_owned();
-        let left = match linalg::whitened(own, &beside) {
+        let left = match linalg::whiten_columns(own, &beside) {
             Some(whitened) => left - whitened.tr_mul(&whitened),
             None => return (vec![(f64::INFINITY, f64::INFINITY); n - k], f64::INFINITY),
         };
@@ -130,8 +130,8 @@ pub fn witnesses(
     target: Option<&str>,
     options: &TrackOptions,
 ) -> Result<Witnesses> {
-    let model = Model::from_calibration(file, options)?;
-    let elsewhere = new.map(|readings| elsewhere(&model, measured, readings)).transpose()?;
+    let model = VisitModel::from_calibration(file, options)?;
+    let elsewhere = new.map(|readings| rows_elsewhere(&model, measured, readings)).transpose()?;
     let measured = elsewhere.as_ref().unwrap_or(measured);
     let data = &*file.at_stage(measured, file.stages());
     let same_tool = TrackOptions { tool_is_anew: false, ..*options };
@@ -157,7 +157,7 @@ pub fn witnesses(
         rows.flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect()
     };
     let fewest = candidates.free + candidates.seen.len().min(1) + 1;
-    let chosen = exchanged(&candidates, count.min(some.len()));
+    let chosen = exchange_choices(&candidates, count.min(some.len()));
     let own = numbers(&chosen);
     if own.len() < fewest {
         return ErrorKind::Problem.refuse(format!(
@@ -167,10 +167,12 @@ pub fn witnesses(
     }
     let changes = of_repeats(&visit, &own);
     let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
-    let evidence =
-        Evidence::new(&changes.residual, &super::hypotheses::free(&changes.jacobian, &visit, options));
-    leave_unseen_out(&mut hypotheses, &evidence, Level::Known(1.0));
-    let tests = Tests::new(&hypotheses);
+    let evidence = ProjectedChanges::new(
+        &changes.residual,
+        &super::hypotheses::find_free_columns(&changes.jacobian, &visit, options),
+    );
+    leave_unseen_out(&mut hypotheses, &evidence, NoiseLevel::Known(1.0));
+    let tests = HypothesisTests::new(&hypotheses);
     let freedom = if options.repeatability_m.is_some() {
         f64::INFINITY
     } else {
@@ -200,7 +202,7 @@ fn rows_of_target(data: &Dataset, target: Option<&str>) -> Result<Vec<u32>> {
 }
 
 /// The rows of the first measured configuration as if they had been measured in others, once in each.
-fn elsewhere(model: &Model, measured: &Dataset, readings: &[f64]) -> Result<Dataset> {
+fn rows_elsewhere(model: &VisitModel, measured: &Dataset, readings: &[f64]) -> Result<Dataset> {
     let first = measured.configurations(&measured.all_rows()).into_iter().next().unwrap_or_default();
     let width = model.robot.reading_names().len();
     let mut seen = BTreeSet::new();
@@ -210,21 +212,22 @@ fn elsewhere(model: &Model, measured: &Dataset, readings: &[f64]) -> Result<Data
 }
 
 /// Changes of rows from their own repeats, as if nothing had changed.
-fn of_repeats(visit: &Visit, numbers: &[usize]) -> Changes {
+fn of_repeats(visit: &Visit, numbers: &[usize]) -> VisitChanges {
     let sigma = visit.sigma.select_rows(numbers) * std::f64::consts::SQRT_2;
     let mut jacobian = visit.jacobian.select_rows(numbers);
     jacobian.row_iter_mut().zip(sigma.iter()).for_each(|(mut row, sigma)| row /= *sigma);
-    Changes { residual: sigma.map(|_| 0.0), jacobian, sigma, scatter: (0.0, 0.0), rows: Vec::new() }
+    VisitChanges { residual: sigma.map(|_| 0.0), jacobian, sigma, scatter: (0.0, 0.0), rows: Vec::new() }
 }
 
 fn candidates(visit: &Visit, configurations: &[Vec<u32>], options: &TrackOptions) -> Candidates {
     let information = |rows: &Vec<u32>| {
         let own = rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]);
         let changes = of_repeats(visit, &own.collect::<Vec<usize>>());
-        let free = free(&changes.jacobian, visit, options);
-        let zeros = picked(&changes.jacobian, &visit.columns, |of| matches!(of, Of::Zero(_)));
-        let tool = picked(&changes.jacobian, &visit.columns, |of| {
-            matches!(of, Of::Target(_)) && !options.tool_is_anew
+        let free = find_free_columns(&changes.jacobian, visit, options);
+        let zeros =
+            pick_columns(&changes.jacobian, &visit.columns, |of| matches!(of, ColumnSubject::Zero(_)));
+        let tool = pick_columns(&changes.jacobian, &visit.columns, |of| {
+            matches!(of, ColumnSubject::Target(_)) && !options.tool_is_anew
         });
         let (k, n) = (free.ncols(), zeros.ncols());
         let mut both = DMatrix::zeros(free.nrows(), k + n + tool.ncols());
@@ -254,14 +257,14 @@ fn candidates(visit: &Visit, configurations: &[Vec<u32>], options: &TrackOptions
 }
 
 /// The best choice of several starts.
-fn exchanged(candidates: &Candidates, count: usize) -> Vec<usize> {
+fn exchange_choices(candidates: &Candidates, count: usize) -> Vec<usize> {
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let total = candidates.all.len();
     let mut best: Option<(f64, Vec<usize>)> = None;
     for _ in 0..STARTS {
         let mut chosen: Vec<usize> = Vec::with_capacity(count);
         while chosen.len() < count {
-            let drawn = ((uniform(&mut generator) * total as f64) as usize).min(total - 1);
+            let drawn = ((uniform_number(&mut generator) * total as f64) as usize).min(total - 1);
             if !chosen.contains(&drawn) {
                 chosen.push(drawn);
             }

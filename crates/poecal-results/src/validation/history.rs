@@ -11,8 +11,8 @@ use serde_json::Value;
 use super::{SCHEMA, TRACK, Validation, ValidationVerdict};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::{self, ObjectKind};
-use poecal_storage::held;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
+use poecal_storage::write_locks;
 
 /// Name of the file beside a calibration.
 pub const HISTORY: &str = "history.jsonl";
@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A check of the history.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct Earlier {
+pub struct HistoryEntry {
     /// Time of the check, UTC, `2026-03-02T10:20:30Z`.
     pub time: String,
     /// Number of measurements.
@@ -42,7 +42,7 @@ pub struct History {
 
 /// The current time, UTC, in the form of the history: `SOURCE_DATE_EPOCH` if that is set; `None` without a clock.
 #[must_use]
-pub fn now() -> Option<String> {
+pub fn current_time() -> Option<String> {
     #[cfg(target_family = "wasm")]
     return None;
     #[cfg(not(target_family = "wasm"))]
@@ -62,8 +62,8 @@ impl History {
     /// # Errors
     /// [`ErrorKind::File`] if the path is no file, the file cannot be read, or no line of it is a check.
     pub fn read(path: &Path) -> Result<Self> {
-        let disk = disk::here();
-        let failed = |error: io::Error| refused(path, format!("the history cannot be read ({error})"));
+        let disk = disk::current_disk();
+        let failed = |error: io::Error| history_error(path, format!("the history cannot be read ({error})"));
         let there = match disk.follow(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return Ok(History { path: path.to_owned(), ..History::default() });
@@ -71,14 +71,17 @@ impl History {
             there => there.map_err(failed)?,
         };
         if there.kind != ObjectKind::File {
-            return Err(refused(path, "found no file, expected the history of checks or nothing".to_owned()));
+            return Err(history_error(
+                path,
+                "found no file, expected the history of checks or nothing".to_owned(),
+            ));
         }
         let mut text = Vec::new();
         disk.open(path)
-            .and_then(|file| file.take(Limit::History.most() + 1).read_to_end(&mut text))
+            .and_then(|file| file.take(ResourceLimit::History.value() + 1).read_to_end(&mut text))
             .map_err(failed)?;
-        if text.len() as u64 > Limit::History.most() {
-            return Err(refused(path, Limit::History.exceeded("a history")));
+        if text.len() as u64 > ResourceLimit::History.value() {
+            return Err(history_error(path, ResourceLimit::History.exceeded_error("a history")));
         }
         let is_torn = text.last().is_some_and(|last| *last != b'\n');
         let lines = text.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
@@ -91,14 +94,14 @@ impl History {
         if lines.is_empty() && !text.is_empty() && !(is_torn && begins_one && !text.contains(&b'\n')) {
             let message =
                 "found a file without a check, expected the history of checks or nothing".to_owned();
-            return Err(refused(path, message));
+            return Err(history_error(path, message));
         }
         Ok(History { path: path.to_owned(), is_torn, lines })
     }
 
     /// The checks of the same calibration before this one, by the SHA-256 of its file.
     #[must_use]
-    pub fn before(&self, validation: &Validation, sha256: &str) -> Vec<Earlier> {
+    pub fn checks_before(&self, validation: &Validation, sha256: &str) -> Vec<HistoryEntry> {
         let own = line_of(validation, "").map(|(_, line)| without_run(line)).ok();
         let is_of = |line: &&Value| {
             let inputs = line.get("inputs");
@@ -115,8 +118,8 @@ impl History {
     /// # Errors
     /// [`ErrorKind::File`] if the file cannot be written, [`ErrorKind::Export`] if the check cannot be written as JSON.
     pub fn append(&mut self, check: &impl Serialize, time: &str) -> Result<()> {
-        let patience = held::patience().max(PATIENCE);
-        let _held = held::hold(&self.path, "the history", patience, &mut |_| ())?;
+        let patience = write_locks::patience().max(PATIENCE);
+        let _held = write_locks::hold(&self.path, "the history", patience, &mut |_| ())?;
         // Another run may have appended since it was read.
         *self = History::read(&self.path)?;
         let (text, line) = line_of(check, time)?;
@@ -125,12 +128,13 @@ impl History {
             return Ok(());
         }
         let text = if self.is_torn { format!("\n{text}\n") } else { format!("{text}\n") };
-        let written = disk::here().append(&self.path).and_then(|mut out| {
+        let written = disk::current_disk().append(&self.path).and_then(|mut out| {
             // In one piece, so that two runs at the same time write two lines.
             out.write_all(text.as_bytes())?;
             out.sync()
         });
-        written.map_err(|error| refused(&self.path, format!("the history cannot be written ({error})")))?;
+        written
+            .map_err(|error| history_error(&self.path, format!("the history cannot be written ({error})")))?;
         self.is_torn = false;
         self.lines.push(line);
         Ok(())
@@ -139,7 +143,7 @@ impl History {
 
 /// A line.
 #[derive(Serialize)]
-struct Timed<'a, T: Serialize> {
+struct TimedLine<'a, T: Serialize> {
     time: &'a str,
     #[serde(flatten)]
     check: &'a T,
@@ -148,7 +152,7 @@ struct Timed<'a, T: Serialize> {
 /// The line of a check, as text and as a value that has been read.
 fn line_of(check: &impl Serialize, time: &str) -> Result<(String, Value)> {
     let cannot = |error| ErrorKind::Export.error(format!("the check cannot be written: {error}"));
-    let text = serde_json::to_string(&Timed { time, check }).map_err(cannot)?;
+    let text = serde_json::to_string(&TimedLine { time, check }).map_err(cannot)?;
     let line = serde_json::from_str(&text).map_err(cannot)?;
     Ok((text, line))
 }
@@ -163,6 +167,6 @@ fn without_run(mut line: Value) -> Value {
     line
 }
 
-fn refused(path: &Path, message: String) -> Error {
+fn history_error(path: &Path, message: String) -> Error {
     ErrorKind::File.error(message).in_file(path)
 }

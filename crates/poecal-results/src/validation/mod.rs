@@ -3,7 +3,7 @@
 mod history;
 mod rows;
 
-pub use history::{Earlier, HISTORY, History, now};
+pub use history::{HISTORY, History, HistoryEntry, current_time};
 pub use rows::JudgedRows;
 
 use std::collections::BTreeMap;
@@ -13,10 +13,11 @@ use serde::{Deserialize, Serialize};
 use super::calibration_file::CalibrationFile;
 use super::record::Record;
 use poecal_calibrate::{
-    AcceptanceLimits, AcceptedModel, Gain, JudgedError, Judgement, Level, Promise, Refitted,
+    AcceptanceLimits, AcceptedModel, Gain, JudgedError, Judgement, Level, PredictiveDistribution,
+    RefittedPart,
 };
 use poecal_import::{InputEntry, JoinEntry};
-use poecal_model::measurement::{Dataset, Measured, Quantity};
+use poecal_model::measurement::{Dataset, MeasuredQuantities, Quantity};
 use poecal_numerics::error::Result;
 
 /// Share of the error of a later state below which an earlier one fits better.
@@ -61,7 +62,7 @@ pub struct ValidationVerdict {
     pub gain: Option<Gain>,
     /// Its errors.
     #[serde(flatten)]
-    pub errors: Measured<VerdictError>,
+    pub errors: MeasuredQuantities<VerdictError>,
 }
 
 /// Errors of a quantity, millimetres or degrees.
@@ -111,7 +112,7 @@ pub struct Validation {
 
 /// Options of the judgement of a calibration.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Judging<'a> {
+pub struct ValidationOptions<'a> {
     /// Refit the device's frame.
     pub refit_frame: bool,
     /// Refit it if the measurements show that the device has moved.
@@ -130,10 +131,10 @@ impl Validation {
     pub fn from_measurements(
         file: &CalibrationFile,
         original: &Dataset,
-        judging: &Judging<'_>,
+        judging: &ValidationOptions<'_>,
         inputs: ValidationInputs,
     ) -> Result<Self> {
-        let Judging { refit_frame, refit_moved, refit_tool, accept } = *judging;
+        let ValidationOptions { refit_frame, refit_moved, refit_tool, accept } = *judging;
         let judge = |data: &Dataset| {
             if refit_frame {
                 file.judge(data, true, refit_tool)
@@ -149,12 +150,14 @@ impl Validation {
         for earlier in (1..stages).rev() {
             let other = file.at_stage(original, earlier);
             let Ok(found) = judge(&other) else { continue };
-            if found.delivered().errors.lead().rms < FITS * judgement.delivered().errors.lead().rms {
+            if found.delivered_model().errors.lead().rms
+                < FITS * judgement.delivered_model().errors.lead().rms
+            {
                 (data, judgement, stage) = (other, found, earlier);
             }
         }
         let data = &*data;
-        let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
+        let refit_frame = judgement.refitted.contains(&RefittedPart::DeviceFrame);
         let accept = accept.map(|limits| file.accept(data, refit_frame, refit_tool, limits, &inputs.sha256));
         let acceptance = accept.transpose()?;
         let judged_at = (stages > 1).then_some(stage);
@@ -169,8 +172,8 @@ impl Validation {
     /// use poecal_calibrate::{CalibrationOptions, calibrate};
     /// use poecal_results::calibration_file::{CalibrationFile, Inputs};
     /// use poecal_results::validation::{Validation, ValidationInputs};
-    /// use poecal_model::simulate::{Kind, Simulation, elbow};
-    /// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+    /// use poecal_model::simulate::{SessionKind, Simulation, elbow};
+    /// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
     /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
     /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     /// let judgement = file.judge(&made.data, false, false)?;
@@ -223,9 +226,9 @@ impl Validation {
 
 impl ValidationVerdict {
     fn from_judgement(judgement: &Judgement) -> Self {
-        let found = judgement.delivered();
-        let (level, reasons) = judgement.confirmed();
-        let errors = Measured::from_fn(|quantity: Quantity| {
+        let found = judgement.delivered_model();
+        let (level, reasons) = judgement.confirmed_level();
+        let errors = MeasuredQuantities::from_fn(|quantity: Quantity| {
             let own = found.errors.get(quantity)?;
             let part = found.promised.and_then(|it| it.parts.get(quantity));
             let (rms, max) = (own.rms, own.max);
@@ -242,8 +245,8 @@ impl ValidationVerdict {
 }
 
 /// A quantity's error, expectation and bound, millimetres or degrees.
-fn shown(quantity: Quantity, found: JudgedError) -> [Option<f64>; 3] {
-    let shown = |value: f64| quantity.unit().shown(value);
-    let promised = |of: fn(&Promise) -> f64| found.promised.as_ref().map(|it| shown(of(it)));
+fn in_file_units(quantity: Quantity, found: JudgedError) -> [Option<f64>; 3] {
+    let shown = |value: f64| quantity.unit().in_shown_unit(value);
+    let promised = |of: fn(&PredictiveDistribution) -> f64| found.promised.as_ref().map(|it| shown(of(it)));
     [Some(shown(found.length)), promised(|it| it.variance.sqrt()), promised(|it| it.bound)]
 }

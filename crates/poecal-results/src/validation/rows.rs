@@ -1,6 +1,6 @@
 //! `errors.csv`: the error of each judging row beside its predicted uncertainty.
 
-use super::shown;
+use super::in_file_units;
 use poecal_calibrate::JudgedRow;
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::{ReadingKind, Robot};
@@ -24,7 +24,7 @@ pub struct JudgedRows<'a> {
 impl JudgedRows<'_> {
     /// The quantities that some row measured.
     #[must_use]
-    pub fn measured(&self) -> Vec<Quantity> {
+    pub fn measured_quantities(&self) -> Vec<Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| self.data.has(*quantity)).collect()
     }
 
@@ -57,7 +57,7 @@ impl JudgedRows<'_> {
     /// The text of the file.
     #[must_use]
     pub fn text(&self) -> String {
-        let quantities = self.measured();
+        let quantities = self.measured_quantities();
         let names = self.data.reading_names();
         let kinds: Vec<_> = names.iter().map(|name| self.robot.reading_kind(name)).collect();
         let has_stations = self.data.station_count() > 1;
@@ -73,9 +73,9 @@ impl JudgedRows<'_> {
             out.push_str(&format!("{file},{},{id},{target},{inside}", observation.source.line));
             for quantity in &quantities {
                 let found = row.errors.get(*quantity);
-                let numbers = found.map_or([None; 3], |found| shown(*quantity, found));
+                let numbers = found.map_or([None; 3], |found| in_file_units(*quantity, found));
                 let components = (0..quantity.components()).map(|k| {
-                    let value = quantity.unit().shown(*found.as_ref()?.residual.get(k)?);
+                    let value = quantity.unit().in_shown_unit(*found.as_ref()?.residual.get(k)?);
                     Some(value).filter(|value| !value.is_nan())
                 });
                 for number in numbers.into_iter().chain(components) {
@@ -91,7 +91,7 @@ impl JudgedRows<'_> {
             }
             for (value, kind) in self.data.readings(k).iter().zip(&kinds) {
                 out.push(',');
-                push_number(&mut out, kind.shown(*value));
+                push_number(&mut out, kind.in_shown_unit(*value));
             }
             if has_stations {
                 let name = self.data.stations.get(observation.station).and_then(Option::as_deref);

@@ -6,10 +6,12 @@ use poecal_calibrate::{
     AcceptedModel, BlockChoice, CalibrationOptions, Correction, CorrectionModel, Corrections, Level, Sizes,
     TermGroup, calibrate,
 };
-use poecal_fit::state::{Estimate, Packed, RowError, Session};
+use poecal_fit::state::{Estimate, PackedValues, RowError, Session};
 use poecal_model::measurement::{Dataset, Measurement, Quantity};
-use poecal_model::robot::{Extent, Gives, GravityDirection, JointTerm, Robot, Term, TermKind};
-use poecal_model::simulate::{Kind, Simulation, elbow, random};
+use poecal_model::robot::{
+    CompliantDirections, CorrectionExtent, GravityDirection, JointTerm, Robot, Term, TermKind,
+};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, random};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::residuals::Residuals;
 use poecal_testing::trials::trials;
@@ -28,15 +30,15 @@ fn with_sizes(robot: &Robot, data: &Dataset, sizes: Sizes, options: &Calibration
 }
 
 /// Poses of an elbow robot that sags and whose gears are eccentric, by a device beside it.
-fn measured(rows: usize) -> (Robot, Dataset) {
+fn measure_elbow(rows: usize) -> (Robot, Dataset) {
     let nominal = elbow();
-    let mut model = CorrectionModel::new(&nominal, -Vector3::z(), &[true; 6], Extent::default());
+    let mut model = CorrectionModel::new(&nominal, -Vector3::z(), &[true; 6], CorrectionExtent::default());
     let [second, third] = [model.places[1], model.places[2]];
     let planted = [
-        (second, TermKind::Sag.at(5), 8e-4),
-        (third, TermKind::Sag.at(5), 6e-4),
-        (second + 1, TermKind::Sag.at(5), 3e-4),
-        (third, TermKind::Sine.numbered(2), 2e-4),
+        (second, TermKind::Sag.with_index(5), 8e-4),
+        (third, TermKind::Sag.with_index(5), 6e-4),
+        (second + 1, TermKind::Sag.with_index(5), 3e-4),
+        (third, TermKind::Sine.with_number(2), 2e-4),
         (second, Term::RATIO, 1e-4),
     ];
     for (joint, term, coefficient) in planted {
@@ -48,7 +50,7 @@ fn measured(rows: usize) -> (Robot, Dataset) {
     let mut data = Dataset::new(nominal.reading_names());
     for _ in 0..rows {
         let readings: Vec<f64> =
-            (0..6).map(|_| 2.4 * (2.0 * random::uniform(&mut generator) - 1.0)).collect();
+            (0..6).map(|_| 2.4 * (2.0 * random::uniform_number(&mut generator) - 1.0)).collect();
         let mut pose = device_from_base * model.robot.forward_kinematics(&readings);
         pose.translation += 2e-5 * Vector3::from_fn(|_, _| random::normal(&mut generator));
         let turn = 5e-5 * Vector3::from_fn(|_, _| random::normal(&mut generator));
@@ -60,7 +62,7 @@ fn measured(rows: usize) -> (Robot, Dataset) {
 
 #[test]
 fn sag_and_eccentric_gears_are_found_and_predicted() {
-    let (robot, data) = measured(120);
+    let (robot, data) = measure_elbow(120);
     let options = CalibrationOptions { move_tip: true, ..CalibrationOptions::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
     let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
@@ -79,7 +81,8 @@ fn sag_and_eccentric_gears_are_found_and_predicted() {
 /// Without planted effects, sizes that are chosen do little harm, and the corrected robot is the one that predicts.
 #[test]
 fn a_rigid_robot_stays_as_it_is() {
-    let made = Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made =
+        Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let options = CalibrationOptions::default();
     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
     let found = calibration.correction.as_deref().unwrap();
@@ -96,7 +99,7 @@ fn a_rigid_robot_stays_as_it_is() {
 
 #[test]
 fn sizes_are_chosen_and_the_robot_predicts_as_the_fit() {
-    let (robot, data) = measured(120);
+    let (robot, data) = measure_elbow(120);
     let options = CalibrationOptions { move_tip: true, ..CalibrationOptions::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
     let found = calibration.correction.as_deref().unwrap();
@@ -116,7 +119,7 @@ fn sizes_are_chosen_and_the_robot_predicts_as_the_fit() {
 /// The components of a row are those of the delivered model: their length is its error, and not that of geometry alone.
 #[test]
 fn residuals_are_those_of_the_delivered_model() {
-    let (robot, data) = measured(60);
+    let (robot, data) = measure_elbow(60);
     let options = CalibrationOptions { move_tip: true, ..CalibrationOptions::default() };
     let corrected = calibrate(&robot, &data, &options).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Off, ..options };
@@ -126,9 +129,9 @@ fn residuals_are_those_of_the_delivered_model() {
             let errors = row.errors.get(Quantity::Position).unwrap();
             let length = errors.residual().iter().map(|it| it * it).sum::<f64>().sqrt();
             // Sums of three squares in another order.
-            assert!((length - errors.delivered()).abs() < 1e-12 * length);
+            assert!((length - errors.delivered_error()).abs() < 1e-12 * length);
             let is_corrected = calibration.correction.is_some();
-            assert_eq!(is_corrected, errors.delivered() != errors.calibrated());
+            assert_eq!(is_corrected, errors.delivered_error() != errors.calibrated_error());
         }
     }
 }
@@ -136,17 +139,17 @@ fn residuals_are_those_of_the_delivered_model() {
 /// The corrected model of a file predicts as the fit, and its bounds are those of the fit.
 #[test]
 fn a_written_corrected_model_predicts_as_the_fit() {
-    let (robot, data) = measured(60);
+    let (robot, data) = measure_elbow(60);
     let calibration = calibrate(&robot, &data, &CalibrationOptions::default()).unwrap();
     let found = calibration.correction.as_ref().unwrap();
     let text = CalibrationFile::new(&calibration, &data, Inputs::default()).to_text().unwrap();
-    let file = CalibrationFile::parse(&text, "calibration.json").unwrap().corrected().unwrap();
+    let file = CalibrationFile::parse(&text, "calibration.json").unwrap().corrected_file().unwrap();
     let read = file.robot().unwrap();
     let (mut apart, mut wider): (f64, f64) = (0.0, 0.0);
-    let packed = Packed::from_dataset(&found.model.robot, &data);
+    let packed = PackedValues::from_dataset(&found.model.robot, &data);
     let own = found.uncertainty.as_ref().unwrap().predictions(&packed, 0);
     let (again, targets) = file.uncertainty(&[Some("measured")]).unwrap();
-    let packed = Packed::from_dataset(&read, &data);
+    let packed = PackedValues::from_dataset(&read, &data);
     let written = again.predictions(&packed, targets[0]);
     for (row, (own, written)) in own.iter().zip(&written).enumerate() {
         let readings = data.readings(row);
@@ -213,11 +216,11 @@ fn what_is_planted_is_found_and_nothing_else() {
                     noise_rotation_rad: 1e-4,
                     ..Simulation::default()
                 };
-                let made = drawn.run(&elbow(), Kind::POSE).unwrap();
-                let unseen = drawn.held_out(&made, Kind::POSE, 100).unwrap();
+                let made = drawn.run(&elbow(), SessionKind::POSE).unwrap();
+                let unseen = drawn.held_out(&made, SessionKind::POSE, 100).unwrap();
                 let corrections = match sizes.gives() {
-                    Gives::Tilting => Corrections::Auto,
-                    Gives::All => Corrections::All,
+                    CompliantDirections::Tilting => Corrections::Auto,
+                    CompliantDirections::All => Corrections::All,
                 };
                 let options = CalibrationOptions {
                     held_out: Some(0.0),
@@ -228,7 +231,7 @@ fn what_is_planted_is_found_and_nothing_else() {
                 let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                 let found = calibration.correction.as_ref().unwrap();
                 let missed = |robot: &Robot, estimate: &Estimate| {
-                    let packed = Packed::from_dataset(robot, &unseen);
+                    let packed = PackedValues::from_dataset(robot, &unseen);
                     let session = Session::new(robot, &unseen, &packed, true);
                     mean_mm(&session.errors(&unseen.all_rows(), estimate))
                 };
@@ -262,7 +265,7 @@ fn the_direction_of_gravity_is_found() {
     let [tilted, wall] = [Vector3::new(0.2, -0.22, -1.0), Vector3::new(1.0, 0.0, 0.1)];
     for (seed, gravity) in [(1, tilted), (2, tilted), (3, tilted), (4, wall)] {
         let drawn = Simulation { terms, gravity, count: 80, seed, ..Simulation::default() };
-        let made = drawn.run(&elbow(), Kind::POSE).unwrap();
+        let made = drawn.run(&elbow(), SessionKind::POSE).unwrap();
         let options =
             CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
@@ -280,7 +283,8 @@ fn the_direction_of_gravity_is_found() {
 #[test]
 fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
     for seed in trials(5).seeds() {
-        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+        let made =
+            Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
         let options =
             CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
@@ -297,7 +301,7 @@ fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
 fn the_verdict_is_of_the_model_that_is_delivered() {
     let Ok(Corrections::Sizes(terms)) = "sag=2e-2,tilt=2e-2".parse() else { panic!("no sizes") };
     let drawn = Simulation { terms, count: 150, seed: 3, ..Simulation::default() };
-    let made = drawn.run(&elbow(), Kind::POSE).unwrap();
+    let made = drawn.run(&elbow(), SessionKind::POSE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
     let rigid = calibrate(&made.nominal, &made.data, &options).unwrap();
     let whole = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
@@ -317,7 +321,7 @@ fn the_tolerance_fits_how_far_a_robot_is_from_its_drawing() {
             count: 14,
             ..Simulation::default()
         };
-        let made = drawn.run(&elbow(), Kind::POINT).unwrap();
+        let made = drawn.run(&elbow(), SessionKind::POINT).unwrap();
         let options = CalibrationOptions { chooses_tolerance: true, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
         let chosen = calibration.chosen_tolerance.unwrap();
@@ -331,12 +335,12 @@ fn the_tolerance_fits_how_far_a_robot_is_from_its_drawing() {
 #[test]
 fn a_coupling_is_found_where_it_is_asked_for() {
     let nominal = elbow();
-    let coupled = TermKind::Coupled.at(3);
+    let coupled = TermKind::Coupled.with_index(3);
     let mut actual = nominal.clone();
     actual.terms.push(JointTerm { joint: 4, term: coupled, coefficient: 0.012 });
     let mut generator = ChaCha8Rng::seed_from_u64(3);
     let drawn = Simulation { count: 40, ..Simulation::default() };
-    let made = drawn.measure(&nominal, actual, Kind::POSE, &mut generator).unwrap();
+    let made = drawn.measure(&nominal, actual, SessionKind::POSE, &mut generator).unwrap();
     let blocks = BlockChoice { free: vec!["joint5.coupled4".to_owned()], fix: Vec::new() };
     let options = CalibrationOptions { blocks, ..CalibrationOptions::default() };
     let calibration = calibrate(&nominal, &made.data, &options).unwrap();
@@ -347,7 +351,7 @@ fn a_coupling_is_found_where_it_is_asked_for() {
     assert!((found - 0.012).abs() < 2e-4, "{found}");
     assert_eq!(file.blocks.as_ref().unwrap().free.last().map(String::as_str), Some("joint5.coupled4"));
     // Without further terms the calibrated model is the one that predicts.
-    let read = file.corrected().unwrap_or(file).robot().unwrap();
+    let read = file.corrected_file().unwrap_or(file).robot().unwrap();
     assert!(read.terms.iter().any(|it| read.joints[it.joint].name == "joint5" && it.coefficient != 0.0));
     for word in ["joint5.coupled9", "joint5.coupled5", "joint5.sag1"] {
         let blocks = BlockChoice { free: vec![word.to_owned()], fix: Vec::new() };
@@ -362,11 +366,13 @@ fn noise_of_few_poses_stays() {
     let mut sizes = Sizes::NONE;
     (sizes[TermGroup::Sag], sizes[TermGroup::Tilt]) = (1e-3, 1e-3);
     for count in 11..16 {
-        let (robot, data) = measured(count);
+        let (robot, data) = measure_elbow(count);
         let options = CalibrationOptions { held_out: Some(0.0), diagnose: false, ..Default::default() };
         let found = with_sizes(&robot, &data, sizes, &options);
-        let bounds =
-            found.uncertainty.as_ref().map(|it| it.predictions(&Packed::from_dataset(&found.model.robot, &data), 0));
+        let bounds = found
+            .uncertainty
+            .as_ref()
+            .map(|it| it.predictions(&PackedValues::from_dataset(&found.model.robot, &data), 0));
         let widest = bounds.iter().flatten().map(|it| it.bound_position_m()).fold(0.0, f64::max);
         let noise = 1e3 * found.noise[Quantity::Position];
         println!(
@@ -386,8 +392,8 @@ fn frames_along_the_axes_change_no_correction() {
     for (k, joint) in other.joints.iter_mut().enumerate() {
         joint.frame.translation += joint.screw.direction() * (0.1 + 0.2 * k as f64);
     }
-    let [one, two] =
-        [&robot, &other].map(|it| CorrectionModel::new(it, -Vector3::z(), &[true; 6], Extent::default()));
+    let [one, two] = [&robot, &other]
+        .map(|it| CorrectionModel::new(it, -Vector3::z(), &[true; 6], CorrectionExtent::default()));
     let (a, b) = (one.robot.gravity.unwrap(), two.robot.gravity.unwrap());
     let of_weights = a.weights.iter().zip(&b.weights).map(|(a, b)| (a.place - b.place).norm());
     let of_axes = a.axes.iter().zip(&b.axes).map(|(a, b)| (a.1 - b.1).norm());
@@ -401,11 +407,11 @@ fn frames_along_the_axes_change_no_correction() {
 /// A term that geometry has is in no group beside it.
 #[test]
 fn a_freed_term_is_fitted_once() {
-    let (robot, data) = measured(80);
+    let (robot, data) = measure_elbow(80);
     let blocks = BlockChoice { free: vec!["joint3.sin2".to_owned()], ..Default::default() };
     let options = CalibrationOptions { blocks, ..Default::default() };
     let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
-    let name = TermKind::Sine.numbered(2);
+    let name = TermKind::Sine.with_number(2);
     let third = found.model.places[2];
     let own: Vec<&JointTerm> =
         found.robot.terms.iter().filter(|it| (it.joint, it.term) == (third, name)).collect();
@@ -417,7 +423,7 @@ fn a_freed_term_is_fitted_once() {
 /// The stated motion of the target by an effect equals the difference of the robot's predictions.
 #[test]
 fn effects_are_what_predictions_lose_without_them() {
-    let (robot, data) = measured(120);
+    let (robot, data) = measure_elbow(120);
     let options = CalibrationOptions { held_out: Some(0.0), move_tip: true, ..Default::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
     let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
@@ -461,14 +467,14 @@ fn factors_are_read_fitted_and_kept() {
     {
         let Ok(Corrections::Sizes(terms)) = words.parse() else { panic!("no sizes") };
         let simulation = Simulation { terms, count: 80, seed: 3, ..Simulation::default() };
-        let made = simulation.run(&elbow(), Kind::POSE).unwrap();
+        let made = simulation.run(&elbow(), SessionKind::POSE).unwrap();
         assert_eq!(made.nominal.reading_names()[6], first);
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let found = calibration.correction.as_ref().unwrap();
         let geometry = calibration.accuracy.held_out.unwrap().calibrated.position_mm().mean;
         let corrected = found.held_out.unwrap().position_mm().mean;
         let text = CalibrationFile::new(&calibration, &made.data, Inputs::default()).to_text().unwrap();
-        let read = CalibrationFile::parse(&text, "calibration.json").unwrap().corrected().unwrap();
+        let read = CalibrationFile::parse(&text, "calibration.json").unwrap().corrected_file().unwrap();
         let read = read.robot().unwrap();
         let apart = (0..made.data.len()).map(|row| {
             let readings = made.data.readings(row);
@@ -487,7 +493,7 @@ fn factors_are_read_fitted_and_kept() {
 /// Terms without an argument are refused, and so are those of all directions beside axes that are held.
 #[test]
 fn corrections_that_cannot_be_are_refused() {
-    let (robot, data) = measured(30);
+    let (robot, data) = measure_elbow(30);
     let refused = |corrections: &str, fix: &[&str]| {
         let corrections: Corrections = corrections.parse().unwrap();
         let blocks = BlockChoice { fix: fix.iter().map(|&it| it.to_owned()).collect(), ..Default::default() };

@@ -9,7 +9,7 @@ use poecal_formats::urdf::UrdfDocument;
 use poecal_import::{ColumnMap, DecimalSign, MeasurementFile, ReadOptions, read};
 use poecal_model::measurement::Set;
 use poecal_model::robot::{Joint, Robot};
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::residuals::Residuals;
 use poecal_testing::files::Folder;
@@ -129,10 +129,13 @@ fn a_documented_dh_table_has_a_fixed_pose_between_its_rows() {
 
 #[test]
 fn results_have_the_documented_columns_and_keys() {
-    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
-    assert_eq!(Residuals::from_calibration(&made.data, &calibration).text().lines().next().unwrap(), documented);
+    assert_eq!(
+        Residuals::from_calibration(&made.data, &calibration).text().lines().next().unwrap(),
+        documented
+    );
     assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 28));
 
     let inputs = Inputs::default();

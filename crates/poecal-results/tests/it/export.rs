@@ -5,8 +5,8 @@ use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::calibrate;
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::{Joint, JointKind, Reading, Robot};
-use poecal_model::simulate::random::uniform;
-use poecal_model::simulate::{Kind, Simulation, elbow, gantry, random_chain, scara, seven_axis};
+use poecal_model::simulate::random::uniform_number;
+use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, random_chain, scara, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::export::{ExportFormat, ExportOptions, export};
 use poecal_results::model::{Model, ModelSource};
@@ -40,13 +40,13 @@ fn ur_like() -> Robot {
 }
 
 /// A robot whose axes deviate from nominal.
-fn off(robot: &Robot, seed: u64) -> Robot {
+fn perturb_robot(robot: &Robot, seed: u64) -> Robot {
     let g = &mut ChaCha8Rng::seed_from_u64(seed);
-    let mut any = |size: f64| Vector3::from_fn(|_, _| (2.0 * uniform(g) - 1.0) * size);
+    let mut any = |size: f64| Vector3::from_fn(|_, _| (2.0 * uniform_number(g) - 1.0) * size);
     let mut found = robot.clone();
     for joint in &mut found.joints {
         let motion = Pose::new(poecal_arm::lie::rotation::exp(&any(TILT_RAD)), any(SHIFT_M));
-        joint.screw = joint.screw.transformed(&motion);
+        joint.screw = joint.screw.transform(&motion);
         joint.frame = motion * joint.frame;
     }
     found.home = found.home * Pose::new(poecal_arm::lie::rotation::exp(&any(0.3)), any(0.1));
@@ -62,7 +62,7 @@ fn robots() -> Vec<Robot> {
         |_| seven_axis(),
         |seed| random_chain(6, seed),
     ];
-    (0..50).map(|seed| off(&kinds[seed as usize % kinds.len()](seed), seed)).collect()
+    (0..50).map(|seed| perturb_robot(&kinds[seed as usize % kinds.len()](seed), seed)).collect()
 }
 
 fn model(robot: &Robot) -> Model {
@@ -88,7 +88,7 @@ fn about(axis: usize, angle: f64) -> M {
     m
 }
 
-fn placed(entry: &Value) -> M {
+fn entry_pose(entry: &Value) -> M {
     let [x, y, z] = numbers(&entry["position_m"]).try_into().unwrap();
     let [a, b, c, w] = numbers(&entry["quaternion_xyzw"]).try_into().unwrap();
     let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, a, b, c));
@@ -97,7 +97,7 @@ fn placed(entry: &Value) -> M {
 
 fn by_table(text: &str, q: &[f64]) -> M {
     let file: Value = serde_json::from_str(text).unwrap();
-    let mut found = placed(&file["base_from_first"]);
+    let mut found = entry_pose(&file["base_from_first"]);
     for (row, &q) in file["rows"].as_array().unwrap().iter().zip(q) {
         let of = |key: &str| row[key].as_f64().unwrap();
         let (mut theta, mut d) = (of("theta_rad"), of("d_m"));
@@ -119,7 +119,7 @@ fn by_table(text: &str, q: &[f64]) -> M {
             _ => joint * link,
         };
     }
-    found * placed(&file["last_from_tip"])
+    found * entry_pose(&file["last_from_tip"])
 }
 
 fn by_screws(text: &str, q: &[f64]) -> M {
@@ -132,7 +132,7 @@ fn by_screws(text: &str, q: &[f64]) -> M {
         twist.fixed_view_mut::<3, 1>(0, 3).copy_from(&v);
         found *= (twist * q).exp();
     }
-    found * placed(&file["home"])
+    found * entry_pose(&file["home"])
 }
 
 /// Origins in lines `key: number`, six of each joint, or in cells.
@@ -163,11 +163,11 @@ fn of_csv(text: &str) -> Vec<f64> {
 }
 
 /// Largest difference of the tip from a robot's, metres and parts of rotation matrices.
-fn worst(robot: &Robot, place: impl Fn(&[f64]) -> M) -> f64 {
+fn largest_difference(robot: &Robot, place: impl Fn(&[f64]) -> M) -> f64 {
     let g = &mut ChaCha8Rng::seed_from_u64(9);
     let mut worst = 0.0f64;
     for _ in 0..100 {
-        let q: Vec<f64> = robot.joints.iter().map(|_| 4.0 * uniform(g) - 2.0).collect();
+        let q: Vec<f64> = robot.joints.iter().map(|_| 4.0 * uniform_number(g) - 2.0).collect();
         let found = place(&q);
         let pose = robot.forward_kinematics(&q);
         let off = (found.fixed_view::<3, 1>(0, 3) - pose.translation).amax();
@@ -189,15 +189,15 @@ fn forms_of_fifty_robots_say_what_the_robot_does() {
             written += 1;
             largest = largest.max(found);
         };
-        check("hayati", worst(&robot, |q| by_table(&text(ExportFormat::Hayati).unwrap(), q)));
-        check("poe", worst(&robot, |q| by_screws(&text(ExportFormat::Poe).unwrap(), q)));
+        check("hayati", largest_difference(&robot, |q| by_table(&text(ExportFormat::Hayati).unwrap(), q)));
+        check("poe", largest_difference(&robot, |q| by_screws(&text(ExportFormat::Poe).unwrap(), q)));
         let csv = of_csv(&text(ExportFormat::Csv).unwrap());
-        check("csv", worst(&robot, |q| by_origins(&csv, &robot, q)));
+        check("csv", largest_difference(&robot, |q| by_origins(&csv, &robot, q)));
         let origins = of_yaml(&text(ExportFormat::Origins).unwrap());
-        check("origins", worst(&robot, |q| by_origins(&origins, &robot, q)));
+        check("origins", largest_difference(&robot, |q| by_origins(&origins, &robot, q)));
         for format in [ExportFormat::Dh, ExportFormat::Mdh] {
             match text(format) {
-                Ok(text) => check("dh", worst(&robot, |q| by_table(&text, q))),
+                Ok(text) => check("dh", largest_difference(&robot, |q| by_table(&text, q))),
                 Err(error) => assert!(error.to_string().contains("nearly parallel"), "{error}"),
             }
         }
@@ -216,7 +216,7 @@ fn forms_of_fifty_robots_say_what_the_robot_does() {
 /// A joint that follows another one of the chain is written as a follower, in the forms that have such joints; others refuse it.
 #[test]
 fn followers_stay_followers() {
-    let mut robot = off(&ur_like(), 5);
+    let mut robot = perturb_robot(&ur_like(), 5);
     let leader = robot.joints[1].name.clone();
     robot.joints[2].reading = Reading { name: leader, multiplier: -0.5, offset: 0.3 };
     let model = model(&robot);
@@ -238,7 +238,7 @@ fn parallel_axes_have_tables() {
     for robot in [ur_like(), scara(), gantry()] {
         for format in [ExportFormat::Dh, ExportFormat::Mdh, ExportFormat::Hayati] {
             let text = export(&model(&robot), format, &ExportOptions::default()).unwrap().text;
-            let found = worst(&robot, |q| by_table(&text, q));
+            let found = largest_difference(&robot, |q| by_table(&text, q));
             println!("{} {format:?}: {found:e}", robot.name);
             assert!(found < 1e-12);
         }
@@ -252,10 +252,10 @@ fn files_of_makers() {
         let options = ExportOptions { hash: hash.map(str::to_owned), ..ExportOptions::default() };
         export(&model(robot), format, &options)
     };
-    let six = off(&ur_like(), 3);
+    let six = perturb_robot(&ur_like(), 3);
     let ur = of(&six, ExportFormat::Ur, Some("calib_123")).unwrap();
     assert!(ur.text.contains("kinematics:\n  shoulder:\n    x: ") && ur.text.contains("  hash: calib_123\n"));
-    let found = worst(&six, |q| by_origins(&of_yaml(&ur.text), &six, q));
+    let found = largest_difference(&six, |q| by_origins(&of_yaml(&ur.text), &six, q));
     assert!(found < 1e-9, "{found:e}");
     assert!(of(&six, ExportFormat::Ur, None).unwrap().notes[0].contains("--hash"));
     assert!(
@@ -264,10 +264,10 @@ fn files_of_makers() {
             .to_string()
             .contains("found 7 joints, expected the 6")
     );
-    let seven = off(&seven_axis(), 4);
+    let seven = perturb_robot(&seven_axis(), 4);
     let franka = of(&seven, ExportFormat::Franka, None).unwrap();
     assert!(franka.text.contains("joint8:\n  kinematic:\n"));
-    let found = worst(&seven, |q| by_origins(&of_yaml(&franka.text), &seven, q));
+    let found = largest_difference(&seven, |q| by_origins(&of_yaml(&franka.text), &seven, q));
     assert!(found < 1e-9, "{found:e}");
     assert!(of(&scara(), ExportFormat::Xarm, None).unwrap_err().to_string().contains("slides"));
 }
@@ -276,7 +276,7 @@ fn files_of_makers() {
 #[test]
 fn offsets_state_what_remains() {
     let simulation = Simulation { count: 150, noise_position_m: 1e-5, ..Simulation::default() };
-    let made = simulation.run(&elbow(), Kind::POSE).unwrap();
+    let made = simulation.run(&elbow(), SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let robot = file.robot().unwrap();
@@ -307,7 +307,7 @@ fn offsets_state_what_remains() {
     };
     let own: Value = serde_json::from_str(&with(100, 0).unwrap().text).unwrap();
     assert_eq!(own["joint2"]["homing_offset"].as_i64().unwrap(), 100 + ticks as i64);
-    let refused = |found: poecal_numerics::error::Result<poecal_results::export::Exported>| {
+    let refused = |found: poecal_numerics::error::Result<poecal_results::export::ExportedRobot>| {
         found.unwrap_err().to_string()
     };
     assert!(refused(with(0, 1)).contains("found drive_mode 1 of motor `joint1`, expected 0"));
@@ -321,7 +321,7 @@ fn offsets_state_what_remains() {
 /// Names that a form reserves or would repeat are changed there, and odd names are read back.
 #[test]
 fn names_of_all_kinds() {
-    let mut robot = off(&elbow(), 5);
+    let mut robot = perturb_robot(&elbow(), 5);
     (robot.base_name, robot.tip_name) = ("world".to_owned(), "joint6_link".to_owned());
     for (joint, name) in
         robot.joints.iter_mut().zip(["base", "a: b", "it's \"x\"", "gelenk\u{e4}", "yes", "joint6"])
@@ -355,7 +355,7 @@ fn names_of_all_kinds() {
 /// A robot with compliant joints and terms has its geometry in every form, a note on the losses, and a file beside.
 #[test]
 fn corrected_robots_are_geometry_and_a_file_beside() {
-    let (mut robot, _) = elbow().giving(&[1, 2], poecal_model::robot::Gives::All);
+    let (mut robot, _) = elbow().with_compliance(&[1, 2], poecal_model::robot::CompliantDirections::All);
     robot.terms.push(poecal_model::robot::JointTerm {
         joint: 0,
         term: poecal_model::robot::Term::RATIO,
@@ -387,7 +387,7 @@ fn corrected_robots_are_geometry_and_a_file_beside() {
 fn limits_go_with_the_zero() {
     let mut robot = elbow();
     robot.joints[1].reading.offset = 0.5;
-    robot.joints[1].limits = Some(poecal_model::robot::Limits { lower: -1.0, upper: 1.0 });
+    robot.joints[1].limits = Some(poecal_model::robot::JointLimits { lower: -1.0, upper: 1.0 });
     let text = export(&model(&robot), ExportFormat::Mjcf, &ExportOptions::default()).unwrap().text;
     assert!(text.contains("range=\"-1.5 0.5\""), "{text}");
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
-use poecal_testing::largest::larger;
+use poecal_testing::largest::larger_or_nan;
 use serde::Deserialize;
 
 /// Both sides round in double precision, at lengths of a few metres.
@@ -54,13 +54,14 @@ fn forward_kinematics_agrees_with_pinocchio() {
         for (configuration, readings) in expected.configurations.iter().zip(&readings) {
             for tip in [robot.forward_kinematics(readings), together.next().unwrap()] {
                 let rotation = Matrix3::from_fn(|row, column| configuration.rotation[row][column]);
-                own.0 = larger(own.0, (tip.translation - Vector3::from(configuration.position_m)).norm());
-                own.1 = larger(own.1, (tip.rotation - rotation).norm());
+                own.0 =
+                    larger_or_nan(own.0, (tip.translation - Vector3::from(configuration.position_m)).norm());
+                own.1 = larger_or_nan(own.1, (tip.rotation - rotation).norm());
             }
         }
         assert!(together.next().is_none());
         println!("{:20} {:.1e} m, {:.1e} in the rotation matrix", expected.urdf, own.0, own.1);
-        largest = (larger(largest.0, own.0), larger(largest.1, own.1));
+        largest = (larger_or_nan(largest.0, own.0), larger_or_nan(largest.1, own.1));
     }
     println!(
         "largest difference from Pinocchio {}: {:.1e} m, {:.1e}",

@@ -8,7 +8,7 @@ use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_model::robot::{
     Body, Gravity, JointTerm, Mass, Moments, Robot, Situation, Statics, Term, TermKind,
 };
-use poecal_model::simulate::{Kind, Simulation, elbow};
+use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 
 /// A shoulder and an elbow with a cover that is fixed to the forearm, and a cart below the base.
@@ -92,7 +92,8 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
         less[joint] -= step;
         let slope = (potential(&more) - potential(&less)) / (2.0 * step);
         let situation = Situation { values: &at, moments: Some(&moments), factors: &[] };
-        let moment = situation.basis(joint, TermKind::Masses.numbered(0)) * statics.mass_levers_kg_m()[joint];
+        let moment =
+            situation.basis(joint, TermKind::Masses.with_number(0)) * statics.mass_levers_kg_m()[joint];
         println!("{moment:.9} kg m, by differences {slope:.9}");
         // Differences of order 2 over 1e-5.
         assert!((moment - slope).abs() < 1e-8);
@@ -109,15 +110,20 @@ fn masses_are_kept_with_the_corrected_model() {
     };
     nominal.masses = vec![mass(1, 9.0), mass(2, 6.0), mass(4, 2.0)];
     let Ok(Corrections::Sizes(terms)) = "sag=1e-3".parse() else { panic!("no sizes") };
-    let made = Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, Kind::POSE).unwrap();
+    let made =
+        Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let found = calibration.correction.as_ref().unwrap();
     assert!(
-        found.robot.terms.iter().any(|it| it.term == TermKind::Masses.numbered(0) && it.coefficient != 0.0)
+        found
+            .robot
+            .terms
+            .iter()
+            .any(|it| it.term == TermKind::Masses.with_number(0) && it.coefficient != 0.0)
     );
     let text = CalibrationFile::new(&calibration, &made.data, Inputs::default()).to_text().unwrap();
     let read =
-        CalibrationFile::parse(&text, "calibration.json").unwrap().corrected().unwrap().robot().unwrap();
+        CalibrationFile::parse(&text, "calibration.json").unwrap().corrected_file().unwrap().robot().unwrap();
     let apart = (0..made.data.len()).map(|row| {
         let [a, b] =
             [&found.robot, &read].map(|it| it.forward_kinematics(made.data.readings(row)).translation);
@@ -129,7 +135,7 @@ fn masses_are_kept_with_the_corrected_model() {
     for wrong in ["\"mass_kg\": -6.0", "\"mass_kg\": 1e300"] {
         let text = text.replace("\"mass_kg\": 6.0", wrong);
         let refused = CalibrationFile::parse(&text, "calibration.json")
-            .and_then(|file| file.corrected().unwrap().robot());
+            .and_then(|file| file.corrected_file().unwrap().robot());
         assert!(refused.unwrap_err().to_string().contains("expected above 0 and at most 1e6"));
     }
 }

@@ -6,7 +6,7 @@ use poecal_calibrate::{BlockChoice, CalibrationOptions, Level, calibrate};
 use poecal_import::{ReadOptions, parse};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Configurations, Kind, Simulation, elbow, random};
+use poecal_model::simulate::{Configurations, SessionKind, Simulation, elbow, random};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_testing::sessions::geometry;
 use rand_chacha::ChaCha8Rng;
@@ -22,7 +22,7 @@ fn robots() -> (Robot, Robot) {
     let robot = elbow();
     let home = robot.home * Pose::from_translation(Vector3::new(0.08, 0.0, 0.05));
     let made = Simulation { count: 1, ..Simulation::default() };
-    let made = made.run(&Robot { home, ..robot }, Kind::POINT).unwrap();
+    let made = made.run(&Robot { home, ..robot }, SessionKind::POINT).unwrap();
     (made.actual, made.nominal)
 }
 

@@ -6,14 +6,14 @@ use poecal_calibrate::{BlockChoice, Calibration, CalibrationOptions, Level, cali
 use poecal_fit::analysis::Cause;
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::{Robot, Term};
-use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, random, seven_axis};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, random, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 /// A visit to a robot that differs from its model only by its zeros, with a reflector 100 mm beside the tip.
-fn visit(robot: &Robot, zeros: &[f64], seed: u64) -> Simulated {
+fn visit(robot: &Robot, zeros: &[f64], seed: u64) -> SimulationResult {
     let mut model = robot.clone();
     model.home = model.home * Pose::from_translation(Vector3::new(0.03, 0.1, 0.02));
     let exact = Simulation {
@@ -24,7 +24,7 @@ fn visit(robot: &Robot, zeros: &[f64], seed: u64) -> Simulated {
         noise_position_m: 5e-5,
         ..Simulation::default()
     };
-    let mut made = exact.run(&model, Kind::POINT).unwrap();
+    let mut made = exact.run(&model, SessionKind::POINT).unwrap();
     let actual = into_screws(&model, zeros).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     for row in 0..made.data.len() {
@@ -35,8 +35,8 @@ fn visit(robot: &Robot, zeros: &[f64], seed: u64) -> Simulated {
     made
 }
 
-fn fitted(
-    made: &Simulated,
+fn calibrate_made(
+    made: &SimulationResult,
     fix: &[&str],
     free: Vec<String>,
     devices: Vec<Pose>,
@@ -66,16 +66,17 @@ fn no_zero_that_is_hidden_has_a_deviation_and_those_of_others_hold() {
         let robot = &robots[seed as usize % robots.len()];
         let mut generator = ChaCha8Rng::seed_from_u64(seed + 40);
         let count = robot.joints.len();
-        let chosen: Vec<usize> = (0..count).filter(|_| random::uniform(&mut generator) < 0.6).collect();
+        let chosen: Vec<usize> =
+            (0..count).filter(|_| random::uniform_number(&mut generator) < 0.6).collect();
         let chosen = if chosen.is_empty() { vec![count - 1] } else { chosen };
         let mut zeros = vec![0.0; count];
         for &joint in &chosen {
-            zeros[joint] = (0.6 * random::uniform(&mut generator) - 0.3f64).to_radians();
+            zeros[joint] = (0.6 * random::uniform_number(&mut generator) - 0.3f64).to_radians();
         }
         let made = visit(robot, &zeros, seed);
         let names: Vec<String> = chosen.iter().map(|&joint| robot.joints[joint].name.clone()).collect();
         let free = names.iter().map(|name| format!("{name}.offset")).collect();
-        let (found, file) = fitted(&made, &["joints"], free, Vec::new());
+        let (found, file) = calibrate_made(&made, &["joints"], free, Vec::new());
         for (&joint, name) in chosen.iter().zip(&names) {
             let (value, sigma) = zero(&file, name);
             let hidden = file.is_open(&format!("{name}.offset"));
@@ -107,7 +108,7 @@ fn a_hidden_zero_is_found_once_what_its_sentence_names_is_held() {
     let zeros = [0.08, 0.12, -0.2, 0.25, -0.15, 0.3].map(f64::to_radians);
     let made = visit(&robot, &zeros, 3);
     let all = || (1..=6).map(|joint| format!("joint{joint}.offset")).collect::<Vec<_>>();
-    let (found, _) = fitted(&made, &["joints"], all(), Vec::new());
+    let (found, _) = calibrate_made(&made, &["joints"], all(), Vec::new());
     let sentences: Vec<&str> = (found.identifiability.unidentifiable.iter())
         .filter(|it| it.cause == Cause::JointOffsets)
         .map(|it| it.description.as_str())
@@ -125,7 +126,7 @@ fn a_hidden_zero_is_found_once_what_its_sentence_names_is_held() {
     // The model ends in the reflector, and the device is as in an earlier calibration.
     let device = made.device_from_base.inverse();
     let fix = [&["joints"][..], &options].concat();
-    let (found, file) = fitted(&made, &fix, all(), vec![device]);
+    let (found, file) = calibrate_made(&made, &fix, all(), vec![device]);
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (6, 6));
     for (joint, zero_of) in zeros.iter().enumerate() {
         let (value, sigma) = zero(&file, &format!("joint{}", joint + 1));

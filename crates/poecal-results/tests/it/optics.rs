@@ -4,35 +4,35 @@ use nalgebra::{Vector2, Vector3};
 use poecal_calibrate::{BlockChoice, Calibration, CalibrationOptions, calibrate_repairing};
 use poecal_fit::start::settle_pictures;
 use poecal_model::camera::{Board, Distortion, Lens, Pictures};
-use poecal_model::measurement::{Dataset, Source};
-use poecal_model::simulate::{Photographed, PictureSimulation, elbow};
+use poecal_model::measurement::{Dataset, RowLocation};
+use poecal_model::simulate::{PictureSimulation, SimulatedPictures, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::model::{Model, ModelSource};
-use poecal_results::predictions::{PredictionFrame, predicted};
+use poecal_results::predictions::{PredictionFrame, predict_readings};
 
 use crate::pictures::session;
 use poecal_testing::trials::trials;
 
 /// A lens with distortion.
-fn bent() -> Lens {
+fn distorted_lens() -> Lens {
     let distortion = Distortion::Brown([-0.12, 0.02, 3e-4, -2e-4, 0.0, 0.0, 0.0, 0.0]);
     Lens { distortion, size_px: Some([1920, 1200]), ..Lens::pinhole([1500.0, 1495.0], [955.0, 604.0]) }
 }
 
 /// A session of 60 pictures by an actual lens and board.
-fn photographed(seed: u64, board: Board) -> Photographed {
-    let usual = PictureSimulation::usual(session(seed), seed.is_multiple_of(2));
-    PictureSimulation { lens: bent(), board, ..usual }.run(&elbow()).unwrap()
+fn photograph_session(seed: u64, board: Board) -> SimulatedPictures {
+    let usual = PictureSimulation::with_usual_camera(session(seed), seed.is_multiple_of(2));
+    PictureSimulation { lens: distorted_lens(), board, ..usual }.run(&elbow()).unwrap()
 }
 
 /// The same corners, read with another lens and board.
-fn read_with(made: &Photographed, change: impl Fn(&mut Pictures)) -> Dataset {
+fn read_with(made: &SimulatedPictures, change: impl Fn(&mut Pictures)) -> Dataset {
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     data.pictures = Pictures { all: Vec::new(), ..made.data.pictures.clone() };
     change(&mut data.pictures);
     for picture in &made.data.pictures.all {
         let readings = made.data.readings(picture.row as usize).to_vec();
-        let taken = (None, Source::default());
+        let taken = (None, RowLocation::default());
         data.push_picture(&readings, picture.clone(), taken).unwrap().unwrap();
     }
     data.settle_pixels();
@@ -40,7 +40,7 @@ fn read_with(made: &Photographed, change: impl Fn(&mut Pictures)) -> Dataset {
     data
 }
 
-fn calibrated(made: &Photographed, data: &Dataset, free: &[&str]) -> (Calibration, Dataset) {
+fn calibrate_pictures(made: &SimulatedPictures, data: &Dataset, free: &[&str]) -> (Calibration, Dataset) {
     let free = free.iter().map(|it| (*it).to_owned()).collect();
     let options =
         CalibrationOptions { blocks: BlockChoice { free, ..BlockChoice::default() }, ..Default::default() };
@@ -52,12 +52,12 @@ fn held_out_px(calibration: &Calibration) -> f64 {
     calibration.accuracy.held_out.as_ref().and_then(|it| it.calibrated.pixels).unwrap().rms_px
 }
 
-fn usual() -> Board {
+fn usual_board() -> Board {
     Board::chessboard("board", [7, 5], 0.036).unwrap()
 }
 
 /// Numbers found against the truth, in their standard deviations.
-fn worst(data: &Dataset, truth: impl Fn(&str) -> Option<f64>) -> f64 {
+fn largest_deviation(data: &Dataset, truth: impl Fn(&str) -> Option<f64>) -> f64 {
     let found = &data.pictures.found;
     assert!(!found.is_empty());
     let off = found.iter().filter_map(|it| Some(((it.found - truth(&it.name)?) / it.deviation).abs()));
@@ -69,23 +69,23 @@ fn a_lens_is_found_with_the_arm() {
     let (mut far, mut all): (f64, f64) = (0.0, 0.0);
     let sessions = trials(8);
     for seed in sessions.seeds() {
-        let made = photographed(seed, usual());
+        let made = photograph_session(seed, usual_board());
         let wrong = |pictures: &mut Pictures| {
-            let lens = bent();
+            let lens = distorted_lens();
             let [fx, fy] = lens.focal_px.map(|it| 1.03 * it);
             pictures.cameras[0].lens =
                 Lens { size_px: lens.size_px, ..Lens::pinhole([fx, fy], [970.0, 590.0]) };
         };
         let data = read_with(&made, wrong);
-        let (held, _) = calibrated(&made, &data, &[]);
-        let (free, found) = calibrated(&made, &data, &["lens"]);
+        let (held, _) = calibrate_pictures(&made, &data, &[]);
+        let (free, found) = calibrate_pictures(&made, &data, &["lens"]);
         let names = poecal_model::camera::LENS_NAMES;
-        let numbers = bent().numbers();
+        let numbers = distorted_lens().numbers();
         let truth = |name: &str| {
             let own = name.rsplit('.').next()?;
             Some(numbers[names.iter().position(|it| *it == own)?])
         };
-        let off = worst(&found, truth);
+        let off = largest_deviation(&found, truth);
         println!(
             "seed {seed}: {:.2} px with the stated lens, {:.3} px with the one found, its worst number {off:.1} standard deviations off",
             held_out_px(&held),
@@ -111,24 +111,24 @@ fn a_board_that_is_bent_and_printed_unequally_is_named_and_found() {
     };
     for seed in 0..2 {
         // 0.8 mm of sagitta along x, and 0.5 % more along x than along y.
-        let mut actual = usual();
+        let mut actual = usual_board();
         let [x, y] = [0, 1].map(|axis| 0.5 * actual.points[23][axis]);
         for point in &mut actual.points {
             let off = point.x - x;
             let rise = 0.8e-3 * (1.0 - (off / x).powi(2));
             *point = Vector3::new(x + 1.005 * off, y + (point.y - y), rise);
         }
-        let made = photographed(seed, actual);
-        let data = read_with(&made, |pictures| pictures.boards[0] = usual());
-        let (held, _) = calibrated(&made, &data, &[]);
+        let made = photograph_session(seed, actual);
+        let data = read_with(&made, |pictures| pictures.boards[0] = usual_board());
+        let (held, _) = calibrate_pictures(&made, &data, &[]);
         let said = held.warnings.iter().find(|it| it.contains("--free board")).cloned().unwrap_or_default();
         println!("{said}");
         let is_named = ["0.4", "0.5"].iter().any(|share| said.contains(&format!("along x are {share}")));
         assert!(is_named && said.contains("bent by 0."), "{:?}", held.warnings);
-        let (free, found) = calibrated(&made, &data, &["board"]);
+        let (free, found) = calibrate_pictures(&made, &data, &["board"]);
         let of = |name: &str| found.pictures.found.iter().find(|it| it.name.ends_with(name)).unwrap().found;
         let unequal = of("scale_x") - of("scale_y");
-        let off = worst(&found, truth);
+        let off = largest_deviation(&found, truth);
         println!(
             "{:.3} px, {:.3} px with the board found; scales {unequal:.5} apart, bend {off:.1} standard deviations off",
             held_out_px(&held),
@@ -141,7 +141,7 @@ fn a_board_that_is_bent_and_printed_unequally_is_named_and_found() {
 /// Points of a body with errors of 0.5 mm (RMS), without the motion of the whole body, which its pose absorbs.
 #[test]
 fn markers_are_found_with_the_arm() {
-    let made = photographed(3, usual());
+    let made = photograph_session(3, usual_board());
     let shift = |at: usize| {
         let of = |k: usize| 0.5e-3 * f64::sin(12.9898 * (3 * at + k) as f64 + 1.0);
         Vector3::new(of(0), of(1), of(2))
@@ -150,9 +150,9 @@ fn markers_are_found_with_the_arm() {
         pictures.boards[0].points.iter_mut().enumerate().for_each(|(at, point)| *point += shift(at));
     };
     let data = read_with(&made, wrong);
-    let (held, _) = calibrated(&made, &data, &[]);
+    let (held, _) = calibrate_pictures(&made, &data, &[]);
     let said = held.warnings.iter().find(|it| it.contains("--free markers"));
-    let (free, found) = calibrated(&made, &data, &["markers"]);
+    let (free, found) = calibrate_pictures(&made, &data, &["markers"]);
     println!("{:.3} px, {:.3} px with the markers found; {said:?}", held_out_px(&held), held_out_px(&free));
     assert!(said.is_some() && held_out_px(&free) < 0.55 && held_out_px(&held) > 1.5 * held_out_px(&free));
     assert_eq!(found.pictures.found.len(), 72);
@@ -161,10 +161,10 @@ fn markers_are_found_with_the_arm() {
 #[test]
 fn clean_sessions_free_nothing() {
     for seed in 10..14 {
-        let made = photographed(seed, usual());
+        let made = photograph_session(seed, usual_board());
         let mut data = made.data.clone();
         settle_pictures(&mut data, &made.nominal);
-        let (clean, _) = calibrated(&made, &data, &[]);
+        let (clean, _) = calibrate_pictures(&made, &data, &[]);
         assert!(!clean.warnings.iter().any(|it| it.contains("--free")), "{:?}", clean.warnings);
     }
 }
@@ -211,10 +211,10 @@ fn what_pictures_cannot_determine_is_named() {
         // With few trials, each kind has one.
         let own = kinds.iter().skip(if all.count == 2 { seed as usize } else { 0 });
         for (name, free, expected, change) in own.step_by(if all.count == 2 { 2 } else { 1 }) {
-            let usual = PictureSimulation::usual(session(300 + seed), seed.is_multiple_of(2));
+            let usual = PictureSimulation::with_usual_camera(session(300 + seed), seed.is_multiple_of(2));
             let made = change(usual).run(&elbow()).unwrap();
             let data = read_with(&made, |_| ());
-            let (calibration, _) = calibrated(&made, &data, free);
+            let (calibration, _) = calibrate_pictures(&made, &data, free);
             let said = calibration.warnings.join("\n");
             println!("{name}: {said}");
             assert!(expected.iter().all(|it| said.contains(it)), "{name}: {said}");
@@ -226,15 +226,15 @@ fn what_pictures_cannot_determine_is_named() {
 
 /// Squared errors of predicted pixels of a grid, and those that the map states, in the middle and at the corners of the image.
 fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
-    let made = photographed(seed, usual());
-    let (calibration, data) = calibrated(&made, &read_with(&made, |_| ()), free);
+    let made = photograph_session(seed, usual_board());
+    let (calibration, data) = calibrate_pictures(&made, &read_with(&made, |_| ()), free);
     let map = &calibration.images[0];
     let [columns, rows] = map.cells.last().unwrap().at.map(|it| it + 1);
     let file = CalibrationFile::new(&calibration, &data, Inputs::default());
     let (robot, path) = (file.robot().unwrap(), "calibration.json".into());
     let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path };
-    let found = predicted(&model, data.all_readings(), PredictionFrame::Device, None, false).unwrap();
-    let (truth, lens) = (bent(), data.pictures.cameras[0].lens);
+    let found = predict_readings(&model, data.all_readings(), PredictionFrame::Device, None, false).unwrap();
+    let (truth, lens) = (distorted_lens(), data.pictures.cameras[0].lens);
     let mut squares = [[0.0; 2]; 2];
     let corners = [0, columns - 1, (rows - 1) * columns, rows * columns - 1];
     for (part, places) in [vec![rows / 2 * columns + columns / 2], corners.to_vec()].into_iter().enumerate() {
@@ -249,7 +249,7 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
                 data.pictures.all.iter().zip(made.camera_from_board.iter().zip(&found.poses))
             {
                 let on_board = exact.inverse().act(&point);
-                let seen = lens.pixel(&picture.directed(row).act(&on_board)).unwrap();
+                let seen = lens.pixel(&picture.directed_measurement(row).act(&on_board)).unwrap();
                 squares[part][0] += mean((seen - pixel).norm_squared());
             }
             squares[part][1] += cell.predicted_px.unwrap().powi(2) / places.len() as f64;
@@ -268,7 +268,7 @@ fn pixels_are_predicted_as_well_as_the_map_says() {
             let ([found, said], count) = ([sum(0), sum(1)].map(f64::sqrt), all.len());
             println!("{name}: {found:.3} px at {place}, the map says {said:.3}, of {count} sessions");
             // One or two directions of a free lens are most of it: a session determines the root to 60 %.
-            assert!((found / said).ln().abs() < 0.25 + sessions.more(0.6), "{found} {said}");
+            assert!((found / said).ln().abs() < 0.25 + sessions.tolerance_factor(0.6), "{found} {said}");
         }
     }
 }

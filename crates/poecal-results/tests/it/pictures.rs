@@ -5,7 +5,7 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::CalibrationOptions;
 use poecal_calibrate::calibrate;
 use poecal_fit::start::settle_pictures;
-use poecal_model::camera::{Board, CommonError, Corner, Distortion, Lens, View, poses_of_rays};
+use poecal_model::camera::{Board, CommonError, Corner, Distortion, Lens, SightingInput, poses_of_rays};
 use poecal_model::simulate::{PictureSimulation, Simulation, elbow};
 
 use poecal_testing::trials::trials;
@@ -79,7 +79,7 @@ fn a_flat_board_has_both_poses_of_opencv() {
     let lens = lens([-0.18, 0.04, 1e-3, -7e-4, -0.01, 0.0, 0.0, 0.0]);
     let board = Board::chessboard("board", [5, 7], 0.036).unwrap();
     let (mut turned, mut shifted): (f64, f64) = (0.0, 0.0);
-    for Seen { pixels, poses } in seen() {
+    for Seen { pixels, poses } in seen_boards() {
         let corner = |(point, pixel): (u32, &[f64; 2])| Corner {
             point,
             pixel: Vector2::from(*pixel),
@@ -88,7 +88,7 @@ fn a_flat_board_has_both_poses_of_opencv() {
             line: 0,
         };
         let corners: Vec<Corner> = (0..).zip(&pixels).map(corner).collect();
-        let view = View { lens: &lens, board: &board, corners: &corners, sigma_px: 0.3 };
+        let view = SightingInput { lens: &lens, board: &board, corners: &corners, sigma_px: 0.3 };
         let mut found: Vec<(f64, Pose)> = poses_of_rays(&view.rays())
             .iter()
             .filter_map(|start| view.sighting(start, false))
@@ -98,7 +98,7 @@ fn a_flat_board_has_both_poses_of_opencv() {
         assert_eq!(found.len(), 2, "{found:?}");
         for ((rms, pose), (turn, shift, expected)) in found.iter().zip(poses) {
             let reference = Pose::new(rotation::exp(&Vector3::from(turn)), Vector3::from(shift));
-            let (metres, radians) = pose.apart(&reference);
+            let (metres, radians) = pose.distance_and_angle(&reference);
             println!("{rms:.4} px, {expected:.4} by OpenCV: {:.1e} m and {radians:.1e} rad apart", metres);
             (turned, shifted) = (turned.max(radians), shifted.max(metres));
             assert!((rms - expected).abs() < 1e-4);
@@ -108,7 +108,7 @@ fn a_flat_board_has_both_poses_of_opencv() {
     assert!(turned < 2e-5 && shifted < 2e-5, "{turned:e} rad, {shifted:e} m");
 }
 
-fn seen() -> [Seen; 3] {
+fn seen_boards() -> [Seen; 3] {
     [
         Seen {
             pixels: [
@@ -215,9 +215,9 @@ pub(crate) fn session(seed: u64) -> Simulation {
 }
 
 /// Held-out figures of simulated sessions, 60 pictures each: the error of the tip in other configurations, and that predicted by the verdict.
-fn judged(in_hand: bool, common: CommonError, seed: u64) -> (f64, f64, usize) {
+fn judge_sessions(in_hand: bool, common: CommonError, seed: u64) -> (f64, f64, usize) {
     let session = session(seed);
-    let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, in_hand) };
+    let simulated = PictureSimulation { common, ..PictureSimulation::with_usual_camera(session, in_hand) };
     let mut made = simulated.run(&elbow()).unwrap();
     let said = settle_pictures(&mut made.data, &made.nominal).notes;
     assert_eq!(said[0].contains("on the last link, and the board stays"), in_hand, "{said:?}");
@@ -240,7 +240,7 @@ fn an_arm_is_calibrated_from_pictures_wherever_the_camera_is() {
     let still = CommonError { shift_m: 0.0, turn_rad: 0.0, ..CommonError::default() };
     for in_hand in [true, false] {
         for seed in 1..4 {
-            let (px, mm, pictures) = judged(in_hand, still, seed);
+            let (px, mm, pictures) = judge_sessions(in_hand, still, seed);
             // Corners of 0.3 px for each coordinate have an error of 0.42 px by themselves.
             assert!(pictures == 18 && px < 0.55 && mm < 0.35, "{px} px, {mm} mm");
         }
@@ -251,7 +251,7 @@ fn an_arm_is_calibrated_from_pictures_wherever_the_camera_is() {
 fn the_error_of_the_configuration_is_found_and_weighs_pictures() {
     for (shift_m, turn_rad) in [(1e-4, 1e-4), (5e-4, 5e-4)] {
         let common = CommonError { shift_m, turn_rad, ..CommonError::default() };
-        let (px, mm, _) = judged(true, common, 5);
+        let (px, mm, _) = judge_sessions(true, common, 5);
         println!("{px:.2} px, {mm:.3} mm with {} mm and mrad a configuration", 1e3 * shift_m);
         // Beside the corners' own noise, the configuration's: shift and turn at 0.8 m, two directions of it.
         let own = 1e3 * (2.0 * (shift_m.powi(2) + (0.8 * turn_rad).powi(2))).sqrt();
@@ -270,7 +270,8 @@ fn bounds_hold_on_pictures_that_were_not_fitted() {
         let (mut inside, mut ratio) = ([0.0; 2], 0.0);
         for seed in sessions.seeds() {
             let session = session(100 + seed);
-            let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, seed % 2 == 0) };
+            let simulated =
+                PictureSimulation { common, ..PictureSimulation::with_usual_camera(session, seed % 2 == 0) };
             let mut made = simulated.run(&elbow()).unwrap();
             settle_pictures(&mut made.data, &made.nominal);
             let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
@@ -288,7 +289,7 @@ fn bounds_hold_on_pictures_that_were_not_fitted() {
             ratio.exp()
         );
         // 16 sessions of 18 pictures: 95 % ± 1.3 %, and the pictures of a session share its fit.
-        let least = 0.89 - sessions.more(0.07);
+        let least = 0.89 - sessions.tolerance_factor(0.07);
         assert!(inside.iter().all(|it| (least..=1.0).contains(it)), "{inside:?}");
         assert!((0.7..1.3).contains(&ratio.exp()), "{}", ratio.exp());
     }

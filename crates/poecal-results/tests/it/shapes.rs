@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use poecal_calibrate::{CalibrationOptions, calibrate};
-use poecal_model::simulate::{Kind, Simulation};
+use poecal_model::simulate::{SessionKind, Simulation};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::model::Model;
-use poecal_results::shapes::{Form, Shapes};
+use poecal_results::shapes::{ShapeForm, Shapes};
 
 /// A binary STL of one triangle.
 fn binary(triangle: &[[f32; 3]; 3]) -> Vec<u8> {
@@ -45,16 +45,19 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     let path = cell.join("robot/two.urdf");
     fs::write(&path, TEXT).unwrap();
     let model = Model::read(&path, &Default::default()).unwrap();
-    let made = Simulation::default().run(&model.robot, Kind::POSE).unwrap();
+    let made = Simulation::default().run(&model.robot, SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
 
     let found = Shapes::read(&file, &cell.join("out/calibration.json"));
-    let of: Vec<(&str, Option<usize>, Form)> =
+    let of: Vec<(&str, Option<usize>, ShapeForm)> =
         found.shapes.iter().map(|it| (it.link.as_str(), it.body.joint(), it.form)).collect();
     // The same mesh twice is stored once.
-    let expected =
-        [("base", None, Form::Mesh(0)), ("upper", Some(0), Form::Mesh(1)), ("lower", Some(1), Form::Mesh(0))];
+    let expected = [
+        ("base", None, ShapeForm::Mesh(0)),
+        ("upper", Some(0), ShapeForm::Mesh(1)),
+        ("lower", Some(1), ShapeForm::Mesh(0)),
+    ];
     assert_eq!(of, expected);
     assert_eq!(found.notes.len(), 3, "{:?}", found.notes);
     assert!(found.notes[0].contains("`package://elsewhere/arm.stl` was not found"), "{:?}", found.notes);
@@ -75,12 +78,16 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     // Shapes of moving links stay with the frames of their joints.
     let shape = &found.shapes[2];
     let (nominal, calibrated) = (&calibration.nominal.joints[1].frame, &calibration.robot.joints[1].frame);
-    let apart = (nominal.inverse() * shape.nominal_pose).apart(&(calibrated.inverse() * shape.pose));
-    let moved = shape.nominal_pose.apart(&shape.pose);
+    let apart =
+        (nominal.inverse() * shape.nominal_pose).distance_and_angle(&(calibrated.inverse() * shape.pose));
+    let moved = shape.nominal_pose.distance_and_angle(&shape.pose);
     println!("shapes stand on their joints within {apart:?}, which the calibration moved by {moved:?}");
     // Rounding of frames about 1 m.
     assert!(apart.0 < 1e-12 && apart.1 < 1e-7 && moved.0 > 1e-6, "{apart:?}, {moved:?}");
-    assert_eq!((Shapes::from_calibration(&file).shapes.len(), Shapes::from_calibration(&file).notes.len()), (0, 0));
+    assert_eq!(
+        (Shapes::from_calibration(&file).shapes.len(), Shapes::from_calibration(&file).notes.len()),
+        (0, 0)
+    );
 
     // Beside the calibration, in the absence of the URDF.
     fs::rename(cell.join("robot"), cell.join("out")).unwrap();
@@ -97,13 +104,13 @@ fn a_box_is_drawn_without_any_file() {
     let box_instead = r#"<box size="0.4 0.05 0.05"/>"#;
     let text = TEXT.replace(r#"<mesh filename="package://elsewhere/arm.stl"/>"#, box_instead);
     let model = Model::parse(&text, "two.urdf", &Default::default()).unwrap();
-    let made = Simulation::default().run(&model.robot, Kind::POSE).unwrap();
+    let made = Simulation::default().run(&model.robot, SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let mut file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
     let found = Shapes::from_calibration(&file).shapes;
     assert_eq!(
         (found.len(), found[0].link.as_str(), found[0].form),
-        (1, "upper", Form::Box([0.4, 0.05, 0.05]))
+        (1, "upper", ShapeForm::Box([0.4, 0.05, 0.05]))
     );
 
     // A robot that is no URDF has no shapes.

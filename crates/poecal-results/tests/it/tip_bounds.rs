@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::{CalibrationOptions, Corrections, DeviceFrameKnowledge, calibrate};
-use poecal_fit::state::Packed;
+use poecal_fit::state::PackedValues;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation, elbow, random_configuration, seven_axis};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, random_configuration, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -16,9 +16,9 @@ use poecal_testing::trials::trials;
 const REFLECTOR: [f64; 3] = [0.03, 0.11, -0.06];
 
 /// A robot with errors of its axes, with the links beyond its last joint as in the model.
-fn made(nominal: &Robot, seed: u64) -> Robot {
+fn make_robot(nominal: &Robot, seed: u64) -> Robot {
     let errors = Simulation { error_rotation_rad: 0.005, error_position_m: 1e-3, ..Simulation::default() };
-    let off = errors.perturbed(nominal, &mut ChaCha8Rng::seed_from_u64(seed));
+    let off = errors.perturb(nominal, &mut ChaCha8Rng::seed_from_u64(seed));
     let screws: Vec<Screw> = off.joints.iter().map(|joint| joint.screw).collect();
     let mut actual = nominal.with_screws(&screws);
     let last = actual.joints.len() - 1;
@@ -30,10 +30,12 @@ fn made(nominal: &Robot, seed: u64) -> Robot {
 fn bounds_of_a_tip_beside_the_reflector_hold() {
     let trials = trials(40).at_least(12);
     let reflector = Pose::from_translation(Vector3::from(REFLECTOR));
-    for (nominal, kind) in [(elbow(), Kind::POINT), (elbow(), Kind::POSE), (seven_axis(), Kind::POINT)] {
+    for (nominal, kind) in
+        [(elbow(), SessionKind::POINT), (elbow(), SessionKind::POSE), (seven_axis(), SessionKind::POINT)]
+    {
         let (mut inside, mut all, mut off, mut expected) = (0, 0, 0.0, 0.0);
         for seed in trials.seeds() {
-            let actual = made(&nominal, seed);
+            let actual = make_robot(&nominal, seed);
             let at_reflector = |robot: &Robot| Robot { home: robot.home * reflector, ..robot.clone() };
             // In the base frame: with the device at an unknown pose, the zero of the last joint is as that of a base that the axes determine.
             let simulation = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
@@ -52,7 +54,7 @@ fn bounds_of_a_tip_beside_the_reflector_hold() {
             let readings: Vec<f64> =
                 (0..30).flat_map(|_| random_configuration(&nominal, &mut generator)).collect();
             let robot = file.robot().unwrap();
-            let packed = Packed::new(&robot, &readings, nominal.joints.len());
+            let packed = PackedValues::new(&robot, &readings, nominal.joints.len());
             let bounds = uncertainty.predictions(&packed, targets[0]);
             let device = calibration.base_from_device.inverse();
             for (q, bound) in readings.chunks_exact(nominal.joints.len()).zip(&bounds) {

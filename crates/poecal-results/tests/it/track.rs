@@ -6,9 +6,11 @@ use poecal_calibrate::{CalibrationOptions, calibrate};
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Gross, Kind, Simulation, elbow, random, scara, seven_axis};
+use poecal_model::simulate::{GrossErrors, SessionKind, Simulation, elbow, random, scara, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
-use poecal_results::track::{Earlier, State, TrackOptions, Unseen, Witnesses, recalibrate, track, witnesses};
+use poecal_results::track::{
+    Baseline, RobotCondition, TrackOptions, Undetectable, Witnesses, recalibrate, track, witnesses,
+};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -27,19 +29,19 @@ struct Cell {
 
 impl Cell {
     fn new(robot: &Robot, seed: u64) -> Self {
-        Cell::spoilt(robot, seed, 0.0)
+        Cell::with_gross_errors(robot, seed, 0.0)
     }
 
     /// The cell with gross errors in a share of the rows of the first visit.
-    fn spoilt(robot: &Robot, seed: u64, share: f64) -> Self {
+    fn with_gross_errors(robot: &Robot, seed: u64, share: f64) -> Self {
         let mut robot = robot.clone();
         // A reflector 100 mm beside the tip, so that the last joint moves it.
         robot.home = robot.home * Pose::from_translation(Vector3::new(0.1, 0.0, 0.0));
         let simulation = Simulation { count: 60, seed, noise_position_m: NOISE_M, ..Simulation::default() };
-        let mut made = simulation.run(&robot, Kind::POINT).unwrap();
+        let mut made = simulation.run(&robot, SessionKind::POINT).unwrap();
         made.data.files.push("first.csv".into());
         (2..).zip(&mut made.data.observations).for_each(|(line, row)| row.source.line = line);
-        Gross { share, ..Gross::default() }.spoil(&mut made.data);
+        GrossErrors { share, ..GrossErrors::default() }.spoil(&mut made.data);
         let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
         Cell { file, actual: made.actual, first: made.data, device_from_base: made.device_from_base }
@@ -76,15 +78,15 @@ impl Cell {
     }
 
     /// Result of a visit: its state, and whether the joint is the explanation, or among those that are named.
-    fn found(&self, data: &Dataset, joint: usize, options: &TrackOptions) -> (bool, bool, bool) {
-        let earlier = Earlier { data: &self.first, is_own: true };
+    fn find_explanation(&self, data: &Dataset, joint: usize, options: &TrackOptions) -> (bool, bool, bool) {
+        let earlier = Baseline { data: &self.first, is_own: true };
         let found = track(&self.file, data, Some(earlier), options).unwrap();
         let name = &self.actual.joints[joint].name;
-        let is_it = |it: &poecal_results::track::Explanation| {
-            it.kind == poecal_results::track::Kind::Zero && it.names.first() == Some(name)
+        let is_it = |it: &poecal_results::track::ChangeExplanation| {
+            it.kind == poecal_results::track::ExplanationKind::Zero && it.names.first() == Some(name)
         };
         let best = found.explanation.as_ref().is_some_and(is_it);
-        (found.state == State::Changed, best, best || found.alternatives.iter().any(is_it))
+        (found.state == RobotCondition::Changed, best, best || found.alternatives.iter().any(is_it))
     }
 }
 
@@ -126,11 +128,11 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
                 seen.joint = sight.joint.clone();
                 seen.smallest_deg += sight.smallest.to_degrees() * VISITS as f64;
                 for _ in 0..VISITS {
-                    let sign = if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
+                    let sign = if random::uniform_number(&mut generator) < 0.5 { -1.0 } else { 1.0 };
                     let mut visit = |times: f64| {
                         let actual = cell.with_zero(joint, sign * times * sight.smallest);
                         let data = cell.visit(&actual, &chosen, device.as_ref(), &mut generator);
-                        cell.found(&data, joint, &options)
+                        cell.find_explanation(&data, joint, &options)
                     };
                     let ((is_changed, is_best, is_among), twice) = (visit(1.0), visit(2.0));
                     seen.visits += 1;
@@ -143,7 +145,7 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
             }
             for _ in 0..5 * VISITS {
                 let data = cell.visit(&cell.actual, &chosen, device.as_ref(), &mut generator);
-                false_alarms += usize::from(cell.found(&data, 0, &options).0);
+                false_alarms += usize::from(cell.find_explanation(&data, 0, &options).0);
                 unchanged += 1;
             }
         }
@@ -208,11 +210,11 @@ fn the_shift_of_each_joint_is_stated_beside_the_explanation() {
     let options = cell.options(true);
     let chosen = witnesses(&cell.file, &cell.first, None, 12, None, &options).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(1);
-    let earlier = Earlier { data: &cell.first, is_own: true };
+    let earlier = Baseline { data: &cell.first, is_own: true };
     for (actual, planted) in [(cell.actual.clone(), None), (cell.with_zero(2, BY), Some(2))] {
         let data = cell.visit(&actual, &chosen, Some(&cell.device_from_base), &mut generator);
         let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
-        assert_eq!(found.state == State::Changed, planted.is_some());
+        assert_eq!(found.state == RobotCondition::Changed, planted.is_some());
         for (joint, sight) in found.joints.iter().enumerate() {
             assert_eq!(sight.shift.is_some(), sight.unseen.is_none(), "{}", sight.joint);
             let Some(shift) = sight.shift else { continue };
@@ -231,7 +233,7 @@ fn the_shift_of_each_joint_is_stated_beside_the_explanation() {
 fn the_first_joint_is_not_seen_from_a_device_that_was_set_up_anew() {
     let cell = Cell::new(&elbow(), 3);
     let chosen = witnesses(&cell.file, &cell.first, None, 8, None, &cell.options(false)).unwrap();
-    assert_eq!(chosen.joints[0].unseen, Some(Unseen::Device));
+    assert_eq!(chosen.joints[0].unseen, Some(Undetectable::Device));
     let known = witnesses(&cell.file, &cell.first, None, 8, None, &cell.options(true)).unwrap();
     assert_eq!(known.joints[0].unseen, None);
     println!("device known: joint 1 from {:.4} deg", known.joints[0].smallest.to_degrees());
@@ -247,7 +249,7 @@ fn one_joint_is_calibrated_anew() {
     let by = 0.2f64.to_radians();
     let actual = cell.with_zero(3, by);
     let data = cell.visit(&actual, &chosen, None, &mut generator);
-    let earlier = Earlier { data: &cell.first, is_own: true };
+    let earlier = Baseline { data: &cell.first, is_own: true };
     let sources = RecalibrationSources::default();
     let repaired =
         recalibrate(&cell.file, &data, Some(earlier), &options, ("joint4", RepairedPart::Zero), sources)
@@ -266,7 +268,7 @@ fn one_joint_is_calibrated_anew() {
     assert!(after < 1.15 * as_it_was && not_repaired > 2.0 * after);
     // The rows of the calibration were measured before: they do not show the shift again.
     let again = track(&repaired.file, &data, Some(earlier), &options).unwrap();
-    assert_eq!(again.state, State::Unchanged);
+    assert_eq!(again.state, RobotCondition::Unchanged);
     let text = repaired.file.to_text().unwrap();
     assert_eq!(CalibrationFile::parse(&text, "calibration.json").unwrap(), repaired.file);
     // The covariance includes the uncertainty of the shift.
@@ -282,7 +284,7 @@ fn one_joint_is_calibrated_anew() {
 #[test]
 fn other_configurations_are_judged_by_the_model() {
     let made = Simulation { count: 90, seed: 2, noise_position_m: NOISE_M, ..Simulation::default() };
-    let made = made.run(&elbow(), Kind::POINT).unwrap();
+    let made = made.run(&elbow(), SessionKind::POINT).unwrap();
     let (fit, rest): (Vec<u32>, Vec<u32>) = made.data.all_rows().into_iter().partition(|row| *row < 70);
     let part = |rows: &[u32]| {
         let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -296,11 +298,11 @@ fn other_configurations_are_judged_by_the_model() {
     let (fit, rest) = (part(&fit), part(&rest));
     let calibration = calibrate(&made.nominal, &fit, &CalibrationOptions::default()).unwrap();
     let file = CalibrationFile::new(&calibration, &fit, Inputs::default());
-    let earlier = Earlier { data: &fit, is_own: true };
+    let earlier = Baseline { data: &fit, is_own: true };
     let found = track(&file, &rest, Some(earlier), &TrackOptions::default()).unwrap();
     assert_eq!(
         (found.state, found.judged_by, found.repeated),
-        (State::Unchanged, poecal_results::track::JudgedBy::Model, 0)
+        (RobotCondition::Unchanged, poecal_results::track::JudgingBasis::Model, 0)
     );
     assert!(found.notes.iter().any(|note| note.contains("none of the rows repeats")), "{:?}", found.notes);
 }
@@ -308,7 +310,7 @@ fn other_configurations_are_judged_by_the_model() {
 /// No visit is compared with rows that the calibration suspects, and they do not enter its assumed errors.
 #[test]
 fn suspected_rows_of_the_calibration_do_not_count() {
-    let [clean, spoilt] = [0.0, 0.1].map(|share| Cell::spoilt(&elbow(), 5, share));
+    let [clean, spoilt] = [0.0, 0.1].map(|share| Cell::with_gross_errors(&elbow(), 5, share));
     let other = Cell::new(&elbow(), 6);
     let repeated = 60 - spoilt.file.outliers.len();
     assert_eq!(repeated, 54);
@@ -321,13 +323,13 @@ fn suspected_rows_of_the_calibration_do_not_count() {
             let noise = random::normal_vector(&mut generator) * NOISE_M;
             data.push(readings, None, Measurement::point(place + noise)).unwrap();
         }
-        track(&cell.file, &data, Some(Earlier { data: &cell.first, is_own: true }), options).unwrap()
+        track(&cell.file, &data, Some(Baseline { data: &cell.first, is_own: true }), options).unwrap()
     };
     let by_repeats = found(&spoilt, &spoilt.first, &spoilt.options(false));
-    assert_eq!((by_repeats.state, by_repeats.repeated), (State::Unchanged, repeated));
+    assert_eq!((by_repeats.state, by_repeats.repeated), (RobotCondition::Unchanged, repeated));
     let [clean, spoilt] = [&clean, &spoilt].map(|cell| found(cell, &other.first, &TrackOptions::default()));
     println!("noise {:.6} m, of a clean calibration {:.6} m", spoilt.noise_m, clean.noise_m);
-    assert!(spoilt.state == State::Unchanged && spoilt.noise_m < 1.5 * clean.noise_m);
+    assert!(spoilt.state == RobotCondition::Unchanged && spoilt.noise_m < 1.5 * clean.noise_m);
 }
 
 /// Positions of a visit are compared with the positions of poses.
@@ -335,15 +337,15 @@ fn suspected_rows_of_the_calibration_do_not_count() {
 fn points_repeat_the_places_of_poses() {
     let robot = elbow();
     let simulation = Simulation { count: 40, seed: 3, noise_position_m: NOISE_M, ..Simulation::default() };
-    let made = simulation.run(&robot, Kind::POSE).unwrap();
+    let made = simulation.run(&robot, SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let options = TrackOptions { repeatability_m: Some(NOISE_M), ..TrackOptions::default() };
-    let earlier = Earlier { data: &made.data, is_own: true };
+    let earlier = Baseline { data: &made.data, is_own: true };
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let joint = 2;
     let mut offsets = vec![0.0; robot.joints.len()];
-    for (by, state) in [(0.0, State::Unchanged), (2e-3, State::Changed)] {
+    for (by, state) in [(0.0, RobotCondition::Unchanged), (2e-3, RobotCondition::Changed)] {
         offsets[joint] = by;
         let actual = into_screws(&made.actual, &offsets).unwrap();
         let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -370,12 +372,12 @@ fn several_zeros_are_all_named_and_an_explanation_that_is_not_complete_says_so()
     let chosen = witnesses(&cell.file, &cell.first, None, 14, None, &options).unwrap();
     let zeros = [0.0, 0.12, -0.2, 0.25, -0.15, 0.3].map(f64::to_radians);
     let actual = into_screws(&cell.actual, &zeros).unwrap();
-    let earlier = Earlier { data: &cell.first, is_own: true };
+    let earlier = Baseline { data: &cell.first, is_own: true };
     let data = cell.visit(&actual, &chosen, None, &mut generator);
     let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
     let explanation = found.explanation.unwrap();
     println!("{:?} {:?}", explanation.names, explanation.sizes);
-    assert_eq!(explanation.kind, poecal_results::track::Kind::Zeros);
+    assert_eq!(explanation.kind, poecal_results::track::ExplanationKind::Zeros);
     // The reflector is on the axis of the last joint.
     assert_eq!(explanation.names, ["joint2", "joint3", "joint4", "joint5"]);
     for (size, zero) in explanation.sizes.iter().zip(&zeros[1..]) {
@@ -392,12 +394,12 @@ fn several_zeros_are_all_named_and_an_explanation_that_is_not_complete_says_so()
             .joints
             .iter()
             .enumerate()
-            .map(|(at, it)| if at == 4 { it.screw.transformed(&frame) } else { it.screw })
+            .map(|(at, it)| if at == 4 { it.screw.transform(&frame) } else { it.screw })
             .collect::<Vec<_>>(),
     );
     let data = cell.visit(&bent, &chosen, None, &mut generator);
     let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
     println!("{:?} {:?}", found.explanation, found.notes);
-    assert_eq!(found.state, State::Changed);
+    assert_eq!(found.state, RobotCondition::Changed);
     assert!(found.notes.iter().any(|it| it.contains("the explanation is not complete") || it.contains("no change of one joint")), "{:?}", found.notes);
 }

@@ -9,7 +9,7 @@ use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_import::ColumnMap;
 use poecal_model::offsets::{OffsetOptions, explain, into_screws};
 use poecal_model::robot::{Body, Robot};
-use poecal_model::simulate::{Kind, Simulation, random_configuration};
+use poecal_model::simulate::{SessionKind, Simulation, random_configuration};
 use poecal_results::calibration_file::{CalibrationFile, Inputs, MeasuredEntry};
 use poecal_results::model::{Model, ModelFormat, ModelSource, convert};
 use rand_chacha::ChaCha8Rng;
@@ -33,7 +33,7 @@ fn torso() -> UrdfDocument {
     UrdfDocument::parse(TORSO, "torso.urdf", &both_hands()).unwrap()
 }
 
-fn refused(selection: &ChainSelection) -> String {
+fn refuse_selection(selection: &ChainSelection) -> String {
     UrdfDocument::parse(TORSO, "torso.urdf", selection).unwrap_err().to_string()
 }
 
@@ -100,7 +100,7 @@ fn the_tip_is_the_first_target_that_moves_and_mistakes_get_one_sentence() {
     assert_eq!(UrdfDocument::parse(TORSO, "torso.urdf", &tip).unwrap().robot().tip_name, "head");
 
     let unknown = ChainSelection { targets: pairs(&[("left", "left_hnad")]), ..ChainSelection::default() };
-    let error = refused(&unknown);
+    let error = refuse_selection(&unknown);
     assert!(
         error.starts_with("torso.urdf: target `left` names link `left_hnad`, expected a link of this file, "),
         "{error}"
@@ -113,17 +113,17 @@ fn the_tip_is_the_first_target_that_moves_and_mistakes_get_one_sentence() {
         ..ChainSelection::default()
     };
     assert_eq!(
-        refused(&above),
+        refuse_selection(&above),
         "torso.urdf: instrument `plate`: its link `torso_lift` is not below base link `torso`, expected a base link above it (`base_link`), or one that fixed joints join to these"
     );
     let still = ChainSelection { targets: pairs(&[("plate", "base_link")]), ..ChainSelection::default() };
     assert!(
-        refused(&still)
+        refuse_selection(&still)
             .contains("found no moving joint between base link `base_link` and the links of the named")
     );
     let alone =
         ChainSelection { instruments: pairs(&[("eyes", "head_camera")]), ..ChainSelection::default() };
-    assert!(refused(&alone).contains("found 5 end links"), "{}", refused(&alone));
+    assert!(refuse_selection(&alone).contains("found 5 end links"), "{}", refuse_selection(&alone));
 }
 
 #[test]
@@ -148,14 +148,14 @@ fn a_mapping_names_links_too_and_contradictions_are_refused() {
 }
 
 /// All joints, instruments and targets moved, the tip with its target.
-fn moved(robot: &Robot, seed: u64) -> Robot {
+fn perturb_robot(robot: &Robot, seed: u64) -> Robot {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut actual = Simulation::default().perturbed(robot, &mut generator);
+    let mut actual = Simulation::default().perturb(robot, &mut generator);
     actual.name.clone_from(&robot.name);
     actual
 }
 
-fn alike(robot: &Robot, other: &Robot, what: &str) {
+fn assert_alike(robot: &Robot, other: &Robot, what: &str) {
     let difference = Difference::from_robots(robot, other, 200);
     println!("{what}: {:.1e} m, {:.1e} rad", difference.position_m, difference.rotation_rad);
     assert!(difference.is_within(1e-12, 1e-12), "{what}: {difference:?}");
@@ -164,13 +164,13 @@ fn alike(robot: &Robot, other: &Robot, what: &str) {
 #[test]
 fn branches_are_written_into_the_urdf_and_into_new_models() {
     let document = torso();
-    let unchanged = document.patched(document.robot()).unwrap();
+    let unchanged = document.patch(document.robot()).unwrap();
     assert_eq!((unchanged.text.as_str(), unchanged.notes.len()), (TORSO, 0));
     for seed in 0..10 {
-        let robot = moved(document.robot(), seed);
-        let patched = document.patched(&robot).unwrap();
+        let robot = perturb_robot(document.robot(), seed);
+        let patched = document.patch(&robot).unwrap();
         let again = UrdfDocument::parse(&patched.text, "torso.urdf", &patched.selection).unwrap();
-        alike(&robot, again.robot(), "patched");
+        assert_alike(&robot, again.robot(), "patched");
         // The hands have fixed joints of their own; other joints stand on the torso.
         assert_eq!(patched.tip_link, "left_hand");
         assert_eq!(
@@ -181,7 +181,7 @@ fn branches_are_written_into_the_urdf_and_into_new_models() {
 
         let toml = robot_toml::write(&robot);
         let read = robot_toml::parse(&toml, "torso.toml").unwrap();
-        alike(&robot, &read, "TOML");
+        assert_alike(&robot, &read, "TOML");
         let model = Model { robot: read, source: ModelSource::Toml, path: "torso.toml".into() };
         for form in [ModelFormat::Urdf, ModelFormat::Toml] {
             convert(&model, form).unwrap();
@@ -240,14 +240,14 @@ fn a_toml_model_says_on_which_link_everything_stands() {
 fn a_calibration_of_two_hands_keeps_its_branches() {
     let nominal = torso().robot().clone();
     let simulation = Simulation { count: 300, ..Simulation::default() };
-    let made = simulation.run(&nominal, Kind::POSE).unwrap();
+    let made = simulation.run(&nominal, SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let held_out = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     // Noise of 0.05 mm of each component.
     println!("held out: {held_out:.4} mm");
     assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
     // The observations of a pair are as in the actual robot.
-    let exact = simulation.held_out(&made, Kind::POSE, 40).unwrap();
+    let exact = simulation.held_out(&made, SessionKind::POSE, 40).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let judgement = file.judge(&exact, false, false).unwrap();
     println!("exact rows: {:.4} mm", judgement.calibrated.position_mm().rms);
@@ -260,8 +260,8 @@ fn a_calibration_of_two_hands_keeps_its_branches() {
     assert!((robot.home.translation - robot.base_from(&robot.mounted[0]).translation).norm() < 1e-15);
     let text = file.to_text().unwrap();
     let again = CalibrationFile::parse(&text, "c.json").unwrap();
-    alike(&robot, &again.robot().unwrap(), "calibration.json");
-    assert_eq!(again.targets["right"].measured(), MeasuredEntry::Pose);
+    assert_alike(&robot, &again.robot().unwrap(), "calibration.json");
+    assert_eq!(again.targets["right"].measured_entry(), MeasuredEntry::Pose);
     again.nominal_robot().unwrap().check_tree().unwrap();
 
     let found = &calibration.identifiability.unidentifiable;

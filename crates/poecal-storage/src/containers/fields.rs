@@ -2,9 +2,9 @@
 
 /// The remaining bytes.
 #[derive(Clone, Copy)]
-pub struct Fields<'b>(pub &'b [u8]);
+pub struct ByteFields<'b>(pub &'b [u8]);
 
-impl<'b> Fields<'b> {
+impl<'b> ByteFields<'b> {
     /// The next `count` bytes.
     pub fn bytes(&mut self, count: usize) -> Option<&'b [u8]> {
         let (found, rest) = self.0.split_at_checked(count)?;
@@ -14,7 +14,7 @@ impl<'b> Fields<'b> {
 
     /// Bytes preceded by their number.
     #[cfg(feature = "bags")]
-    pub fn counted(&mut self) -> Option<&'b [u8]> {
+    pub fn counted_bytes(&mut self) -> Option<&'b [u8]> {
         let count = self.u64()?;
         self.bytes(usize::try_from(count).ok()?)
     }

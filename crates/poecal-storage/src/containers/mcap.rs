@@ -2,9 +2,9 @@
 
 use std::io::{self, BufReader, Read};
 
-use super::fields::Fields;
+use super::fields::ByteFields;
 use super::unpack::unpack;
-use crate::limits::{Limit, amount};
+use crate::limits::{ResourceLimit, amount};
 
 /// Bytes at the beginning of a file.
 pub const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
@@ -32,7 +32,7 @@ pub mod op {
 }
 
 /// Takes the records of a file.
-pub trait Records {
+pub trait RecordSink {
     /// A type of messages by its number.
     fn schema(&mut self, id: u16, name: &str);
     /// A topic by its number, with that of its type and its encoding.
@@ -81,7 +81,7 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
         return Ok(0);
     }
     while fill(&mut input, HEAD, &mut data)? {
-        let mut head = Fields(&data);
+        let mut head = ByteFields(&data);
         let (Some(opcode), Some(mut rest)) = (head.u8(), head.u64()) else { break };
         if matches!(opcode, op::DATA_END | op::FOOTER) {
             break;
@@ -93,11 +93,13 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
                 break;
             }
             rest -= 24;
-            unpacked = Fields(data.get(16..).unwrap_or_default()).u64().unwrap_or_default();
+            unpacked = ByteFields(data.get(16..).unwrap_or_default()).u64().unwrap_or_default();
         }
         sum = sum.saturating_add(unpacked);
         // Such a file is refused: the rest may take minutes to unpack.
-        if sum > Limit::Bag.most() || io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest {
+        if sum > ResourceLimit::Bag.value()
+            || io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest
+        {
             break;
         }
     }
@@ -105,7 +107,7 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
 }
 
 /// Reads a file up to the end of its messages, or up to the damage.
-pub fn read(input: &mut impl Read, taker: &mut impl Records) -> io::Result<Damage> {
+pub fn read(input: &mut impl Read, taker: &mut impl RecordSink) -> io::Result<Damage> {
     let mut input = BufReader::with_capacity(STEP, input);
     let (mut damage, mut data, mut unpacked) = (Damage::default(), Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
@@ -139,9 +141,9 @@ fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, Stri
     if !fill(input, HEAD, data)? {
         return Ok(Err(CUT.to_owned()));
     }
-    let mut head = Fields(data);
+    let mut head = ByteFields(data);
     let (Some(opcode), Some(stated)) = (head.u8(), head.u64()) else { return Ok(Err(CUT.to_owned())) };
-    let Some(size) = usize::try_from(stated).ok().filter(|_| stated <= Limit::Chunk.most()) else {
+    let Some(size) = usize::try_from(stated).ok().filter(|_| stated <= ResourceLimit::Chunk.value()) else {
         return Ok(Err(too_large("a record", stated)));
     };
     if !fill(input, size, data)? {
@@ -158,7 +160,7 @@ fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, Stri
 
 /// Message on a record or chunk beyond the limit.
 fn too_large(what: &str, bytes: u64) -> String {
-    Limit::Chunk.sentence(&format!("{what} of {}", amount(bytes, Limit::Chunk.row().unit)))
+    ResourceLimit::Chunk.sentence(&format!("{what} of {}", amount(bytes, ResourceLimit::Chunk.row().unit)))
 }
 
 /// Reads `size` bytes, and takes memory for no more than exist; false if there are fewer.
@@ -172,17 +174,18 @@ fn fill(input: &mut impl Read, size: usize, into: &mut Vec<u8>) -> io::Result<bo
 fn chunk(
     data: &[u8],
     unpacked: &mut Vec<u8>,
-    taker: &mut impl Records,
+    taker: &mut impl RecordSink,
     times: &mut (u64, u64),
 ) -> Result<(), String> {
-    let mut fields = Fields(data);
-    let head = |fields: &mut Fields<'_>| Some(((fields.u64()?, fields.u64()?), fields.u64()?, fields.u32()?));
+    let mut fields = ByteFields(data);
+    let head =
+        |fields: &mut ByteFields<'_>| Some(((fields.u64()?, fields.u64()?), fields.u64()?, fields.u32()?));
     let (stated, size, crc) = head(&mut fields).ok_or(SHORT)?;
     *times = stated;
     let how = text(&mut fields).ok_or(SHORT)?;
-    let mut records = fields.counted().ok_or(SHORT)?;
+    let mut records = fields.counted_bytes().ok_or(SHORT)?;
     if !how.is_empty() {
-        if size > Limit::Chunk.most() {
+        if size > ResourceLimit::Chunk.value() {
             return Err(too_large("a chunk", size));
         }
         unpack(records, how, size, unpacked)?;
@@ -194,17 +197,17 @@ fn chunk(
     if crc != 0 && crc32fast::hash(records) != crc {
         return Err("another checksum than stated".to_owned());
     }
-    let mut rest = Fields(records);
+    let mut rest = ByteFields(records);
     while !rest.0.is_empty() && !taker.is_full() {
-        let (opcode, own) = rest.u8().zip(rest.counted()).ok_or(SHORT)?;
+        let (opcode, own) = rest.u8().zip(rest.counted_bytes()).ok_or(SHORT)?;
         record(opcode, own, taker)?;
     }
     Ok(())
 }
 
 /// Takes a record that is no chunk.
-fn record(opcode: u8, data: &[u8], taker: &mut impl Records) -> Result<(), String> {
-    let mut fields = Fields(data);
+fn record(opcode: u8, data: &[u8], taker: &mut impl RecordSink) -> Result<(), String> {
+    let mut fields = ByteFields(data);
     let mut take = || -> Option<()> {
         match opcode {
             op::SCHEMA => taker.schema(fields.u16()?, name(&mut fields)?),
@@ -227,12 +230,12 @@ fn record(opcode: u8, data: &[u8], taker: &mut impl Records) -> Result<(), Strin
 const SHORT: &str = "a record that is shorter than what it holds";
 
 /// A text.
-fn text<'b>(fields: &mut Fields<'b>) -> Option<&'b str> {
+fn text<'b>(fields: &mut ByteFields<'b>) -> Option<&'b str> {
     let size = fields.index()?;
     std::str::from_utf8(fields.bytes(size)?).ok()
 }
 
 /// A text that is held.
-fn name<'b>(fields: &mut Fields<'b>) -> Option<&'b str> {
+fn name<'b>(fields: &mut ByteFields<'b>) -> Option<&'b str> {
     text(fields).filter(|it| it.len() <= LONGEST_NAME)
 }

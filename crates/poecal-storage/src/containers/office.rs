@@ -1,6 +1,6 @@
 //! The container of old workbooks (.xls), MS-CFB: streams in chains of sectors.
 
-use super::fields::Fields;
+use super::fields::ByteFields;
 
 /// Beginning of a container.
 pub const MAGIC: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
@@ -25,7 +25,7 @@ struct Container<'b> {
 
 /// The stream of the workbook; `None` if the container is damaged or has none.
 pub fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
-    let shift = Fields(bytes.get(30..)?).u16()?;
+    let shift = ByteFields(bytes.get(30..)?).u16()?;
     if !bytes.starts_with(MAGIC) || !matches!(shift, 9 | 12) {
         return None;
     }
@@ -42,24 +42,24 @@ pub fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
     let small = container.chain(u32_at(root, 116)?, u64::from(u32_at(root, 120)?))?;
     let table = container.chain(u32_at(bytes, 60)?, u64::MAX)?;
     let next: Vec<u32> = numbers(&table).collect();
-    followed(&next, start, size, |sector| {
+    follow_chain(&next, start, size, |sector| {
         let at = usize::try_from(sector).ok()?.checked_mul(SMALL_SECTOR)?;
         small.get(at..at.checked_add(SMALL_SECTOR)?.min(small.len()))
     })
 }
 
 fn is_named(entry: &[u8], name: &str) -> bool {
-    let mut letters = entry.chunks_exact(2).map_while(|it| Fields(it).u16()).take_while(|it| *it != 0);
+    let mut letters = entry.chunks_exact(2).map_while(|it| ByteFields(it).u16()).take_while(|it| *it != 0);
     name.encode_utf16().all(|it| letters.next() == Some(it)) && letters.next().is_none()
 }
 
 fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
-    Fields(bytes.get(at..)?).u32()
+    ByteFields(bytes.get(at..)?).u32()
 }
 
 /// The numbers of sectors in a sequence of bytes.
 fn numbers(bytes: &[u8]) -> impl Iterator<Item = u32> {
-    bytes.chunks_exact(4).filter_map(|it| Fields(it).u32())
+    bytes.chunks_exact(4).filter_map(|it| ByteFields(it).u32())
 }
 
 impl<'b> Container<'b> {
@@ -95,12 +95,12 @@ impl<'b> Container<'b> {
 
     /// The bytes of a chain, at most `size`.
     fn chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
-        followed(&self.next, start, size, |sector| self.sector(sector))
+        follow_chain(&self.next, start, size, |sector| self.sector(sector))
     }
 }
 
 /// The bytes of a chain of sectors, up to a size; `None` if a sector is missing, or the chain is longer than the number of sectors.
-fn followed<'s>(
+fn follow_chain<'s>(
     next: &[u32],
     start: u32,
     size: u64,

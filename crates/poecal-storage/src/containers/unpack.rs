@@ -18,15 +18,15 @@ pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Resul
     }
     let frame = Zstd::new(BufReader::new(file));
     let frame = frame.map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))?;
-    Ok(Box::new(Frames { frame: Some(frame) }.take(most)))
+    Ok(Box::new(UnpackedFrames { frame: Some(frame) }.take(most)))
 }
 
 /// The bytes of all frames of a file; a file that is cut off ends with its last bytes, like the unpacked file.
-struct Frames<R: Read> {
+struct UnpackedFrames<R: Read> {
     frame: Option<Zstd<BufReader<R>, FrameDecoder>>,
 }
 
-impl<R: Read> Read for Frames<R> {
+impl<R: Read> Read for UnpackedFrames<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         while let Some(mut frame) = self.frame.take() {
             let read = frame.read(into);

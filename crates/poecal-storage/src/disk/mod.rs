@@ -1,13 +1,13 @@
 //! File operations behind one small trait, so that whole commands can run on a simulated disk.
 //!
-//! [`SystemDisk`] is the machine's. [`on`] replaces it for the work of one thread; `tests/it/simulated_disk` has one with short writes, no space,
+//! [`SystemDisk`] is the machine's. [`run_on_disk`] replaces it for the work of one thread; `tests/it/simulated_disk` has one with short writes, no space,
 //! and loss of unsynced data.
 //!
-//! [`Disk`] has some twenty operations of one step each. [`here`] is the disk of the thread: the machine's, unless [`on`] names another; in
+//! [`Disk`] has some twenty operations of one step each. [`current_disk`] is the disk of the thread: the machine's, unless [`run_on_disk`] names another; in
 //! WebAssembly a disk in memory (`crates/poecal-wasm`). It is not an argument of the public functions because only WebAssembly and tests need
 //! another disk.
 
-mod given;
+mod preset_files;
 mod system;
 
 use std::any::Any;
@@ -17,7 +17,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub use given::GivenFiles;
+pub use preset_files::PresetFiles;
 pub use system::SystemDisk;
 
 /// Kind of a path's object.
@@ -35,7 +35,7 @@ pub enum ObjectKind {
 
 /// Object at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Object {
+pub struct DiskObject {
     /// Kind of the object.
     pub kind: ObjectKind,
     /// Device and file number, the same for every path to the file; `None` if the system has none.
@@ -48,7 +48,7 @@ pub struct Object {
 pub type Lock = Box<dyn Any + Send>;
 
 /// Result of a request for a lock.
-pub enum Held {
+pub enum LockOutcome {
     /// It is held until dropped. `before` names a run that held it and was killed.
     Mine {
         /// The lock.
@@ -76,11 +76,11 @@ pub trait Output: Write + Send {
 #[expect(clippy::missing_errors_doc, reason = "said once, above")]
 pub trait Disk: Send + Sync {
     /// The object at a path; a link itself.
-    fn look(&self, path: &Path) -> io::Result<Object>;
+    fn look(&self, path: &Path) -> io::Result<DiskObject>;
     /// The object to which a path leads.
-    fn follow(&self, path: &Path) -> io::Result<Object>;
+    fn follow(&self, path: &Path) -> io::Result<DiskObject>;
     /// Path without links.
-    fn actual(&self, path: &Path) -> io::Result<PathBuf>;
+    fn canonical_path(&self, path: &Path) -> io::Result<PathBuf>;
     /// Names in a folder, sorted.
     fn names(&self, folder: &Path) -> io::Result<Vec<OsString>>;
     /// Opens a file for reading.
@@ -115,9 +115,9 @@ pub trait Disk: Send + Sync {
     fn lock(&self, path: &Path) -> io::Result<Option<Lock>>;
     /// Locks an existing file for this run alone, which `holder` names in a line. The file is removed when the lock is dropped.
     /// [`io::ErrorKind::Unsupported`] without locks. A disk of one process needs none.
-    fn hold(&self, path: &Path, holder: &str) -> io::Result<Held> {
+    fn hold(&self, path: &Path, holder: &str) -> io::Result<LockOutcome> {
         let _ = (path, holder);
-        Ok(Held::Mine { lock: Box::new(()), before: None })
+        Ok(LockOutcome::Mine { lock: Box::new(()), before: None })
     }
     /// Locks a folder, waiting some seconds for another holder; returns without a lock if the disk has none.
     fn lock_folder(&self, path: &Path) -> io::Result<Lock>;
@@ -129,14 +129,14 @@ thread_local! {
 
 /// Disk of this thread.
 #[must_use]
-pub fn here() -> Arc<dyn Disk> {
+pub fn current_disk() -> Arc<dyn Disk> {
     HERE.with_borrow(Arc::clone)
 }
 
 /// True if a path leads to a regular file.
 #[must_use]
 pub fn is_file(path: &Path) -> bool {
-    here().follow(path).is_ok_and(|object| object.kind == ObjectKind::File)
+    current_disk().follow(path).is_ok_and(|object| object.kind == ObjectKind::File)
 }
 
 /// Creates a folder with all missing folders above it.
@@ -144,7 +144,7 @@ pub fn is_file(path: &Path) -> bool {
 /// # Errors
 /// Errors of the system.
 pub fn create_folders(path: &Path) -> io::Result<()> {
-    let disk = here();
+    let disk = current_disk();
     if path.as_os_str().is_empty() || disk.follow(path).is_ok_and(|found| found.kind == ObjectKind::Folder) {
         return Ok(());
     }
@@ -158,16 +158,16 @@ pub fn create_folders(path: &Path) -> io::Result<()> {
 }
 
 /// Runs `work` on another disk, on this thread only.
-pub fn on<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
+pub fn run_on_disk<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
     /// Restores the previous disk, also after a panic.
-    struct Back(Option<Arc<dyn Disk>>);
-    impl Drop for Back {
+    struct DiskGuard(Option<Arc<dyn Disk>>);
+    impl Drop for DiskGuard {
         fn drop(&mut self) {
             if let Some(disk) = self.0.take() {
                 HERE.replace(disk);
             }
         }
     }
-    let _back = Back(Some(HERE.replace(disk)));
+    let _back = DiskGuard(Some(HERE.replace(disk)));
     work()
 }

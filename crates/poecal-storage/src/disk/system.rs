@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-use super::{Disk, Held, Lock, Object, ObjectKind, Output};
+use super::{Disk, DiskObject, Lock, LockOutcome, ObjectKind, Output};
 
 /// The machine's disk.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,9 +21,9 @@ impl Output for File {
 }
 
 /// Standard output and error: there is nothing to sync.
-struct Standard<W>(W);
+struct StandardStream<W>(W);
 
-impl<W: io::Write> io::Write for Standard<W> {
+impl<W: io::Write> io::Write for StandardStream<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.write(bytes)
     }
@@ -33,13 +33,13 @@ impl<W: io::Write> io::Write for Standard<W> {
     }
 }
 
-impl<W: io::Write + Send> Output for Standard<W> {
+impl<W: io::Write + Send> Output for StandardStream<W> {
     fn sync(&mut self) -> io::Result<()> {
         self.0.flush()
     }
 }
 
-fn found(metadata: &Metadata) -> Object {
+fn object_kind(metadata: &Metadata) -> DiskObject {
     let kind = match metadata.file_type() {
         kind if kind.is_file() => ObjectKind::File,
         kind if kind.is_dir() => ObjectKind::Folder,
@@ -53,7 +53,7 @@ fn found(metadata: &Metadata) -> Object {
     };
     #[cfg(not(unix))]
     let (identity, is_mine) = (None, true);
-    Object { kind, identity, is_mine }
+    DiskObject { kind, identity, is_mine }
 }
 
 /// Time to wait for a folder's lock, and between attempts. Other runs hold it for less.
@@ -127,12 +127,12 @@ fn rename_in_one_step(_: &Path, _: &Path, _: bool) -> io::Result<()> {
 }
 
 /// A file that is locked, and removed before the lock is released.
-struct HeldFile {
+struct LockedFile {
     file: File,
     path: PathBuf,
 }
 
-impl Drop for HeldFile {
+impl Drop for LockedFile {
     fn drop(&mut self) {
         // If an open file cannot be removed, it is emptied: an empty file means no killed run.
         let _ = self.file.set_len(0);
@@ -163,15 +163,15 @@ const ATTEMPTS: usize = 100;
 const LONGEST_HOLDER: u64 = 500;
 
 impl Disk for SystemDisk {
-    fn look(&self, path: &Path) -> io::Result<Object> {
-        fs::symlink_metadata(path).map(|metadata| found(&metadata))
+    fn look(&self, path: &Path) -> io::Result<DiskObject> {
+        fs::symlink_metadata(path).map(|metadata| object_kind(&metadata))
     }
 
-    fn follow(&self, path: &Path) -> io::Result<Object> {
-        fs::metadata(path).map(|metadata| found(&metadata))
+    fn follow(&self, path: &Path) -> io::Result<DiskObject> {
+        fs::metadata(path).map(|metadata| object_kind(&metadata))
     }
 
-    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
+    fn canonical_path(&self, path: &Path) -> io::Result<PathBuf> {
         fs::canonicalize(path)
     }
 
@@ -206,12 +206,12 @@ impl Disk for SystemDisk {
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>> {
         // Reopening the file of standard output would overwrite it from its beginning.
         if ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name)) {
-            return Ok(Box::new(Standard(io::stdout())));
+            return Ok(Box::new(StandardStream(io::stdout())));
         }
         if ["/dev/stderr", "/dev/fd/2", "/proc/self/fd/2"].iter().any(|name| path == Path::new(name)) {
-            return Ok(Box::new(Standard(io::stderr())));
+            return Ok(Box::new(StandardStream(io::stderr())));
         }
-        Ok(Box::new(Standard(OpenOptions::new().append(true).open(path)?)))
+        Ok(Box::new(StandardStream(OpenOptions::new().append(true).open(path)?)))
     }
 
     fn create_folder(&self, path: &Path) -> io::Result<()> {
@@ -294,7 +294,7 @@ impl Disk for SystemDisk {
         }
     }
 
-    fn hold(&self, path: &Path, holder: &str) -> io::Result<Held> {
+    fn hold(&self, path: &Path, holder: &str) -> io::Result<LockOutcome> {
         for _ in 0..ATTEMPTS {
             let mut file =
                 OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)?;
@@ -303,7 +303,7 @@ impl Disk for SystemDisk {
                 Err(TryLockError::WouldBlock) => {
                     let mut other = String::new();
                     let _ = file.take(LONGEST_HOLDER).read_to_string(&mut other);
-                    return Ok(Held::Other(other.trim().to_owned()));
+                    return Ok(LockOutcome::Other(other.trim().to_owned()));
                 }
                 Err(TryLockError::Error(error)) if has_no_locks(&error) => {
                     return Err(io::ErrorKind::Unsupported.into());
@@ -320,9 +320,12 @@ impl Disk for SystemDisk {
             file.rewind()?;
             file.write_all(holder.as_bytes())?;
             let before = Some(before.trim().to_owned()).filter(|it| !it.is_empty());
-            return Ok(Held::Mine { lock: Box::new(HeldFile { file, path: path.to_owned() }), before });
+            return Ok(LockOutcome::Mine {
+                lock: Box::new(LockedFile { file, path: path.to_owned() }),
+                before,
+            });
         }
-        Ok(Held::Other(String::new()))
+        Ok(LockOutcome::Other(String::new()))
     }
 
     #[cfg(unix)]
@@ -357,13 +360,13 @@ mod tests {
     fn a_lock_names_its_holder_and_is_taken_over_of_a_run_that_was_killed() {
         let path = std::env::temp_dir().join(format!("poecal_lock_{}", std::process::id()));
         let hold = |holder: &str| SystemDisk.hold(&path, holder).unwrap();
-        let Held::Mine { lock, before: None } = hold("first") else { panic!("held by another") };
-        assert!(matches!(hold("second"), Held::Other(name) if name == "first"));
+        let LockOutcome::Mine { lock, before: None } = hold("first") else { panic!("held by another") };
+        assert!(matches!(hold("second"), LockOutcome::Other(name) if name == "first"));
         drop(lock);
         assert!(!path.exists());
         // A killed run leaves its name behind.
         fs::write(&path, "killed").unwrap();
-        let Held::Mine { lock, before } = hold("third") else { panic!("held by another") };
+        let LockOutcome::Mine { lock, before } = hold("third") else { panic!("held by another") };
         assert_eq!(before.as_deref(), Some("killed"));
         assert_eq!(fs::read_to_string(&path).unwrap(), "third");
         drop(lock);

@@ -1,6 +1,6 @@
 //! Limits of the sizes of files: their only table, and their sentence.
 //!
-//! A limit is checked before memory is taken, by [`Limit::refuse`] or [`Limit::most`]. [`on`] replaces the limits for some work of one thread, as
+//! A limit is checked before memory is taken, by [`ResourceLimit::refuse`] or [`ResourceLimit::value`]. [`run_with_limits`] replaces the limits for some work of one thread, as
 //! the program does for `--limit`; work on other threads inherits them. [`set`] replaces one of the process.
 
 mod table;
@@ -12,9 +12,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use poecal_numerics::error::{ErrorKind, Result};
 
 use table::{BYTES, COUNT};
-pub use table::{LIMITS, Limit, LimitRow};
+pub use table::{LIMITS, LimitRow, ResourceLimit};
 
-impl Limit {
+impl ResourceLimit {
     /// Its row of the table.
     #[must_use]
     pub fn row(self) -> &'static LimitRow {
@@ -23,21 +23,21 @@ impl Limit {
 
     /// The limit on this thread.
     #[must_use]
-    pub fn most(self) -> u64 {
-        here().0[self as usize]
+    pub fn value(self) -> u64 {
+        current_limits().0[self as usize]
     }
 
     /// The limit on this thread, as a number of things in memory.
     #[must_use]
     pub fn most_held(self) -> usize {
-        usize::try_from(self.most()).unwrap_or(usize::MAX)
+        usize::try_from(self.value()).unwrap_or(usize::MAX)
     }
 
     /// The sentence of a file that exceeds the limit: the size that was found, the limit, and the remedies with and without a higher limit.
     #[must_use]
     pub fn sentence(self, found: &str) -> String {
         let row = self.row();
-        let most = amount(self.most(), row.unit);
+        let most = amount(self.value(), row.unit);
         let higher = if row.highest > row.usual {
             format!(", or allow more by --limit {}=N", row.name)
         } else {
@@ -48,17 +48,17 @@ impl Limit {
 
     /// The sentence for a number above the limit.
     #[must_use]
-    pub fn exceeded(self, of: &str) -> String {
-        let most = amount(self.most(), self.row().unit);
+    pub fn exceeded_error(self, of: &str) -> String {
+        let most = amount(self.value(), self.row().unit);
         self.sentence(&format!("more than {most} in {of}"))
     }
 
     /// Refuses a number beyond the limit; `found` describes the thing that has it.
     ///
     /// # Errors
-    /// The [`sentence`](Limit::sentence) as an error of [`ErrorKind::File`] without a position.
+    /// The [`sentence`](ResourceLimit::sentence) as an error of [`ErrorKind::File`] without a position.
     pub fn refuse(self, count: u64, found: impl Display) -> Result<()> {
-        if count <= self.most() {
+        if count <= self.value() {
             Ok(())
         } else {
             Err(ErrorKind::File.error(self.sentence(&found.to_string())))
@@ -66,7 +66,7 @@ impl Limit {
     }
 
     /// The limit of a name.
-    fn named(name: &str) -> Option<Self> {
+    fn from_name(name: &str) -> Option<Self> {
         LIMITS.iter().find(|row| row.name == name).map(|row| row.limit)
     }
 }
@@ -98,34 +98,34 @@ fn with_commas(count: u64) -> String {
 
 /// All limits at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits([u64; COUNT]);
+pub struct ResourceLimits([u64; COUNT]);
 
-impl Default for Limits {
+impl Default for ResourceLimits {
     fn default() -> Self {
-        Limits::USUAL
+        ResourceLimits::USUAL
     }
 }
 
-impl Limits {
-    const USUAL: Limits = {
+impl ResourceLimits {
+    const USUAL: ResourceLimits = {
         let (mut all, mut at) = ([0; COUNT], 0);
         while at < COUNT {
             all[at] = LIMITS[at].usual;
             at += 1;
         }
-        Limits(all)
+        ResourceLimits(all)
     };
 
     /// Replaces one limit.
     #[must_use]
-    pub fn with(mut self, limit: Limit, most: u64) -> Self {
+    pub fn with_limit(mut self, limit: ResourceLimit, most: u64) -> Self {
         self.0[limit as usize] = most;
         self
     }
 }
 
 thread_local! {
-    static HERE: Cell<Option<Limits>> = const { Cell::new(None) };
+    static HERE: Cell<Option<ResourceLimits>> = const { Cell::new(None) };
 }
 
 /// The limits of threads without limits of their own.
@@ -140,32 +140,33 @@ static OF_PROCESS: [AtomicU64; COUNT] = {
 
 /// The limits of this thread.
 #[must_use]
-pub fn here() -> Limits {
-    HERE.get().unwrap_or_else(|| Limits(std::array::from_fn(|at| OF_PROCESS[at].load(Ordering::Relaxed))))
+pub fn current_limits() -> ResourceLimits {
+    HERE.get()
+        .unwrap_or_else(|| ResourceLimits(std::array::from_fn(|at| OF_PROCESS[at].load(Ordering::Relaxed))))
 }
 
-/// Sets a limit of the whole process, except for threads at work under others ([`on`]).
-pub fn set(limit: Limit, most: u64) {
+/// Sets a limit of the whole process, except for threads at work under others ([`run_with_limits`]).
+pub fn set(limit: ResourceLimit, most: u64) {
     OF_PROCESS[limit as usize].store(most, Ordering::Relaxed);
 }
 
 /// The limits that differ from the usual ones, in the form of [`parse`].
 #[must_use]
-pub fn stated() -> Vec<String> {
-    let all = LIMITS.iter().zip(here().0).filter(|(row, most)| row.usual != *most);
+pub fn list_changed() -> Vec<String> {
+    let all = LIMITS.iter().zip(current_limits().0).filter(|(row, most)| row.usual != *most);
     all.map(|(row, most)| format!("{}={most}", row.name)).collect()
 }
 
 /// Runs `work` under other limits, on this thread only.
-pub fn on<T>(limits: Limits, work: impl FnOnce() -> T) -> T {
+pub fn run_with_limits<T>(limits: ResourceLimits, work: impl FnOnce() -> T) -> T {
     /// Restores the previous limits, also after a panic.
-    struct Back(Option<Limits>);
-    impl Drop for Back {
+    struct LimitsGuard(Option<ResourceLimits>);
+    impl Drop for LimitsGuard {
         fn drop(&mut self) {
             HERE.set(self.0);
         }
     }
-    let _back = Back(HERE.replace(Some(limits)));
+    let _back = LimitsGuard(HERE.replace(Some(limits)));
     work()
 }
 
@@ -173,13 +174,13 @@ pub fn on<T>(limits: Limits, work: impl FnOnce() -> T) -> T {
 ///
 /// # Errors
 /// One sentence with found and expected, of [`ErrorKind::Option`].
-pub fn parse(text: &str) -> Result<(Limit, u64)> {
-    let refuse = |message: String| -> Result<(Limit, u64)> { Err(ErrorKind::Option.error(message)) };
+pub fn parse(text: &str) -> Result<(ResourceLimit, u64)> {
+    let refuse = |message: String| -> Result<(ResourceLimit, u64)> { Err(ErrorKind::Option.error(message)) };
     let example = "a name and a number, like rows=5000000 or text=1GiB";
     let Some((name, number)) = text.split_once('=') else {
         return refuse(format!("found `{text}`, expected {example}"));
     };
-    let Some(limit) = Limit::named(name) else {
+    let Some(limit) = ResourceLimit::from_name(name) else {
         let names: Vec<&str> = LIMITS.iter().map(|row| row.name).collect();
         return refuse(format!("found the limit `{name}`, expected one of {}", names.join(", ")));
     };
@@ -228,27 +229,27 @@ mod tests {
 
     #[test]
     fn limits_are_of_a_thread_and_for_some_work() {
-        let lower = here().with(Limit::Rows, 3);
-        on(lower, || {
-            assert_eq!(Limit::Rows.most(), 3);
-            assert!(Limit::Rows.refuse(3, "3 rows").is_ok());
-            let error = Limit::Rows.refuse(4, "4 rows").unwrap_err();
+        let lower = current_limits().with_limit(ResourceLimit::Rows, 3);
+        run_with_limits(lower, || {
+            assert_eq!(ResourceLimit::Rows.value(), 3);
+            assert!(ResourceLimit::Rows.refuse(3, "3 rows").is_ok());
+            let error = ResourceLimit::Rows.refuse(4, "4 rows").unwrap_err();
             assert_eq!(
                 error.message(),
                 "found 4 rows, expected at most 3 rows (limit `rows`): split the file, or allow more by --limit rows=N"
             );
-            std::thread::spawn(|| assert_eq!(Limit::Rows.most(), 1_000_000)).join().unwrap();
+            std::thread::spawn(|| assert_eq!(ResourceLimit::Rows.value(), 1_000_000)).join().unwrap();
         });
-        assert_eq!(here(), Limits::default());
-        assert_eq!(on(lower, stated), ["rows=3"]);
+        assert_eq!(current_limits(), ResourceLimits::default());
+        assert_eq!(run_with_limits(lower, list_changed), ["rows=3"]);
         // The stack does not grow with a higher limit.
-        assert!(!Limit::Nesting.exceeded("a line").contains("--limit"));
+        assert!(!ResourceLimit::Nesting.exceeded_error("a line").contains("--limit"));
     }
 
     #[test]
     fn a_limit_is_a_name_and_a_number() {
-        assert_eq!(parse("rows=12").unwrap(), (Limit::Rows, 12));
-        assert_eq!(parse("text=3MiB").unwrap(), (Limit::Text, 3 << 20));
+        assert_eq!(parse("rows=12").unwrap(), (ResourceLimit::Rows, 12));
+        assert_eq!(parse("text=3MiB").unwrap(), (ResourceLimit::Text, 3 << 20));
         for (text, part) in [
             ("rows", "found `rows`, expected a name and a number"),
             ("row=1", "found the limit `row`, expected one of text, program, settings"),

@@ -2,7 +2,7 @@
 
 /// A limit of the size of a file. Its number is its index in [`LIMITS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
+pub enum ResourceLimit {
     /// Bytes of a text that is held whole.
     Text,
     /// Bytes of a robot program.
@@ -54,7 +54,7 @@ pub(crate) const COUNT: usize = 21;
 #[derive(Clone, Copy, Debug)]
 pub struct LimitRow {
     /// The limit.
-    pub limit: Limit,
+    pub limit: ResourceLimit,
     /// Its name on the command line.
     pub name: &'static str,
     /// The usual limit.
@@ -75,7 +75,7 @@ const MIB: u64 = 1 << 20;
 const ANY: u64 = 1 << 50;
 
 const fn row(
-    limit: Limit,
+    limit: ResourceLimit,
     name: &'static str,
     (usual, highest): (u64, u64),
     unit: &'static str,
@@ -88,16 +88,16 @@ const fn row(
 /// All limits. SECURITY.md has this table; a test compares both.
 pub const LIMITS: [LimitRow; COUNT] = [
     row(
-        Limit::Text,
+        ResourceLimit::Text,
         "text",
         (64 * MIB, ANY),
         BYTES,
         "a model, a calibration, or a file of an instrument",
         "split the file",
     ),
-    row(Limit::Program, "program", (4 * MIB, ANY), BYTES, "a robot program", "cut it into several"),
+    row(ResourceLimit::Program, "program", (4 * MIB, ANY), BYTES, "a robot program", "cut it into several"),
     row(
-        Limit::Settings,
+        ResourceLimit::Settings,
         "settings",
         (4 * MIB, ANY),
         BYTES,
@@ -105,7 +105,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "take out what it does not need",
     ),
     row(
-        Limit::Ledger,
+        ResourceLimit::Ledger,
         "ledger",
         (256 * MIB, ANY),
         BYTES,
@@ -113,17 +113,24 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "begin a new one, and name both by --ledger",
     ),
     row(
-        Limit::History,
+        ResourceLimit::History,
         "history",
         (16 * MIB, ANY),
         BYTES,
         "the history of checks of a calibration",
         "move it away: a new one begins",
     ),
-    row(Limit::Table, "table", (4096 * MIB, ANY), BYTES, "a table (CSV)", "split the file"),
-    row(Limit::Rows, "rows", (1_000_000, 100_000_000), "rows", "measurements of one file", "split the file"),
+    row(ResourceLimit::Table, "table", (4096 * MIB, ANY), BYTES, "a table (CSV)", "split the file"),
     row(
-        Limit::Columns,
+        ResourceLimit::Rows,
+        "rows",
+        (1_000_000, 100_000_000),
+        "rows",
+        "measurements of one file",
+        "split the file",
+    ),
+    row(
+        ResourceLimit::Columns,
         "columns",
         (16_384, 1_000_000),
         "columns",
@@ -131,7 +138,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "leave out columns that are not needed",
     ),
     row(
-        Limit::Elements,
+        ResourceLimit::Elements,
         "elements",
         (1_000_000, 1 << 31),
         "elements",
@@ -140,7 +147,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
     ),
     // A higher one could overflow the stack.
     row(
-        Limit::Nesting,
+        ResourceLimit::Nesting,
         "nesting",
         (200, 200),
         "levels",
@@ -148,7 +155,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "write it with fewer",
     ),
     row(
-        Limit::Workbook,
+        ResourceLimit::Workbook,
         "workbook",
         (64 * MIB, ANY),
         BYTES,
@@ -156,7 +163,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "save the sheet of the table as `CSV UTF-8`",
     ),
     row(
-        Limit::Unpacked,
+        ResourceLimit::Unpacked,
         "unpacked",
         (128 * MIB, ANY),
         BYTES,
@@ -164,7 +171,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "save the sheet of the table as `CSV UTF-8`",
     ),
     row(
-        Limit::Cells,
+        ResourceLimit::Cells,
         "cells",
         (4_000_000, 4_000_000_000),
         "cells",
@@ -172,7 +179,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "delete what stands far from the table, or save its sheet as `CSV UTF-8`",
     ),
     row(
-        Limit::Bag,
+        ResourceLimit::Bag,
         "bag",
         (64 * 1024 * MIB, ANY),
         BYTES,
@@ -180,7 +187,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "split it with `ros2 bag convert`",
     ),
     row(
-        Limit::Chunk,
+        ResourceLimit::Chunk,
         "chunk",
         (128 * MIB, ANY),
         BYTES,
@@ -188,7 +195,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "write the bag again with smaller chunks",
     ),
     row(
-        Limit::Topics,
+        ResourceLimit::Topics,
         "topics",
         (65_536, 1 << 31),
         "topics",
@@ -196,16 +203,16 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "record the topics that are needed alone",
     ),
     row(
-        Limit::Poses,
+        ResourceLimit::Poses,
         "poses",
         (3_000_000, 1 << 31),
         "poses",
         "joint readings and poses in the messages of a bag",
         "record the topics that are needed alone, or split the bag",
     ),
-    row(Limit::Picture, "picture", (256 * MIB, ANY), BYTES, "a picture", "save it as JPEG"),
+    row(ResourceLimit::Picture, "picture", (256 * MIB, ANY), BYTES, "a picture", "save it as JPEG"),
     row(
-        Limit::Pixels,
+        ResourceLimit::Pixels,
         "pixels",
         (50_000_000, 4_000_000_000),
         "pixels",
@@ -213,7 +220,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "take pictures of fewer pixels",
     ),
     row(
-        Limit::Dots,
+        ResourceLimit::Dots,
         "dots",
         (6_000, 1_000_000),
         "parts",
@@ -221,7 +228,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "take pictures in which the board is larger, or cover the pattern beside it",
     ),
     row(
-        Limit::Files,
+        ResourceLimit::Files,
         "files",
         (100_000, ANY),
         "files",

@@ -36,7 +36,7 @@ fn names_are_found_as_on_a_system() {
     assert_eq!(kind(disk.look(Path::new("a/one/x"))), Some(ErrorKind::NotADirectory));
     assert_eq!(kind(disk.open(Path::new("a"))), Some(ErrorKind::IsADirectory));
     assert_eq!(kind(disk.names(Path::new("a/one"))), Some(ErrorKind::NotADirectory));
-    assert_eq!(disk.actual(Path::new("/../b/./four")).unwrap(), Path::new("/b/four"));
+    assert_eq!(disk.canonical_path(Path::new("/../b/./four")).unwrap(), Path::new("/b/four"));
 }
 
 #[test]

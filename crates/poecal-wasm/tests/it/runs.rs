@@ -1,13 +1,13 @@
 //! Runs of the program, and requests as bytes.
 
-use poecal_wasm::{Request, decode, run};
+use poecal_wasm::{RunRequest, decode, run};
 
 const ROBOT: &str = include_str!("../../../../examples/elbow/robot.urdf");
 const POINTS: &str = include_str!("../../../../examples/elbow/points.csv");
 
-fn request(words: &str, more: &[(&str, &str)]) -> Request {
+fn request(words: &str, more: &[(&str, &str)]) -> RunRequest {
     let files = [("robot.urdf", ROBOT), ("points.csv", POINTS)].iter().chain(more);
-    Request {
+    RunRequest {
         words: words.split_whitespace().map(str::to_owned).collect(),
         input: Vec::new(),
         files: files.map(|(path, text)| ((*path).to_owned(), (*text).into())).collect(),

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 pub(crate) const NOISE: Noise = Noise::new(5e-5, 5e-4);
 
 /// Measurements with further noise.
-pub(crate) fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
+pub(crate) fn disturb_measurements(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
     let mut disturb = |seen: &Measurement| {
         let shift = random::normal_vector(generator) * NOISE[Quantity::Position];
         let turn = random::normal_vector(generator) * NOISE[Quantity::Rotation];

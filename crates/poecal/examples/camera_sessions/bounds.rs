@@ -4,7 +4,7 @@ use nalgebra::{Matrix6, Vector6};
 use poecal_arm::lie::Pose;
 use poecal_calibrate::CalibrationOptions;
 use poecal_fit::uncertainty::bound;
-use poecal_model::camera::{CommonError, moved};
+use poecal_model::camera::{CommonError, move_pose};
 use poecal_model::measurement::{Dataset, Quantity, deviation};
 use poecal_model::simulate::random;
 use poecal_numerics::error::Error;
@@ -14,7 +14,9 @@ use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
 use crate::information::Information;
-use crate::session::{Session, calibrated, delivered, deviations, rms, session, true_pose};
+use crate::session::{
+    PictureSession, calibrate_session, delivered_poses, deviations, rms, session, true_pose,
+};
 
 /// One position of the camera for each seed, with three errors of the configurations; each again by the rule of independent corners.
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
@@ -24,7 +26,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
         // Sessions of the other rule are for comparison.
         for independent in [false, true].into_iter().take(if seed % 4 < 2 { 2 } else { 1 }) {
             let data = if independent { of_independent_corners(&session.data) } else { session.data.clone() };
-            let mut line = inside(&session, &data)?;
+            let mut line = errors_inside(&session, &data)?;
             line["seed"] = json!(seed);
             line["millis"] = json!(millis);
             line["independent"] = json!(independent);
@@ -35,9 +37,9 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
 }
 
 /// Errors of the further poses, which are free of noise, and of their pictures, which are not.
-fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
-    let (calibration, data) = calibrated(&session.made.nominal, data, &CalibrationOptions::default())?;
-    let (poses, bounds) = delivered(&calibration, &data, session.others.all_readings())?;
+fn errors_inside(session: &PictureSession, data: &Dataset) -> Result<Value, Error> {
+    let (calibration, data) = calibrate_session(&session.made.nominal, data, &CalibrationOptions::default())?;
+    let (poses, bounds) = delivered_poses(&calibration, &data, session.others.all_readings())?;
     // The arm is in its actual configuration, as in the pictures.
     let mut generator = ChaCha8Rng::seed_from_u64(session.simulation.session.seed ^ 0x0b0e);
     let errors = deviations_with_own(session, &poses, &mut generator);
@@ -54,7 +56,7 @@ fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
     let exact = deviations(session, &poses);
     let file = CalibrationFile::new(&calibration, &data, Inputs::default());
     let judgement = file.judge(&session.others, false, false)?;
-    let kept = judgement.delivered().promised;
+    let kept = judgement.delivered_model().promised;
     let held_out = calibration.trust.held_out;
     let parts = |check: poecal_calibrate::CoverageCheck| {
         [Some(check.position_mm().inside_bound95), check.rotation_deg().map(|it| it.inside_bound95)]
@@ -75,7 +77,7 @@ fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
 }
 
 /// Shares of the errors of exact poses inside the 95 % bounds that independent corners imply.
-fn by_rule(session: &Session, deviations: &[Vector6<f64>]) -> [f64; 2] {
+fn by_rule(session: &PictureSession, deviations: &[Vector6<f64>]) -> [f64; 2] {
     let none = CommonError { shift_m: 0.0, turn_rad: 0.0, ..session.simulation.common };
     let spreads = Information::from_session(session, none).spreads();
     [0, 3].map(|first| {
@@ -88,14 +90,18 @@ fn by_rule(session: &Session, deviations: &[Vector6<f64>]) -> [f64; 2] {
 }
 
 /// Deviations of poses from the true ones, each with an error of its configuration.
-fn deviations_with_own(session: &Session, poses: &[Pose], generator: &mut ChaCha8Rng) -> Vec<Vector6<f64>> {
-    let Session { made, others, simulation, .. } = session;
+fn deviations_with_own(
+    session: &PictureSession,
+    poses: &[Pose],
+    generator: &mut ChaCha8Rng,
+) -> Vec<Vector6<f64>> {
+    let PictureSession { made, others, simulation, .. } = session;
     let of = |(row, pose): (usize, &Pose)| {
         let shift = random::normal_vector(generator) * simulation.common.shift_m;
         let turn = random::normal_vector(generator) * simulation.common.turn_rad;
         let truth = true_pose(made, &made.actual, others.readings(row));
         let own = Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z);
-        deviation(pose, &moved(&truth, &own))
+        deviation(pose, &move_pose(&truth, &own))
     };
     poses.iter().enumerate().map(of).collect()
 }
@@ -107,7 +113,7 @@ fn of_independent_corners(data: &Dataset) -> Dataset {
     found.pictures.common.turn_rad = 0.0;
     for at in 0..found.pictures.all.len() {
         let picture = &found.pictures.all[at];
-        let pose = picture.directed(&found.observations[picture.row as usize].measurement.pose());
+        let pose = picture.directed_measurement(&found.observations[picture.row as usize].measurement.pose());
         let sighting = found.pictures.view(picture).and_then(|view| view.sighting(&pose, true));
         if let Some(sighting) = sighting {
             found.state_picture(at, &sighting);

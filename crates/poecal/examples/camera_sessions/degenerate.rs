@@ -8,10 +8,10 @@ use poecal_model::simulate::{PictureSimulation, Simulation, elbow};
 use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
-use crate::session::{calibrated, rebuilt, simulation};
+use crate::session::{calibrate_session, rebuild_pictures, simulation};
 
 /// A kind of session: its name, the form of its pictures, and true if the lens is free.
-struct Kind {
+struct SessionCase {
     name: &'static str,
     is_free: bool,
     of: fn(PictureSimulation) -> PictureSimulation,
@@ -23,26 +23,30 @@ fn lens(focal_px: f64, size_px: [u32; 2]) -> Lens {
     Lens { size_px: Some(size_px), ..Lens::pinhole([focal_px; 2], centre) }
 }
 
-const KINDS: [Kind; 8] = [
-    Kind { name: "clean", is_free: false, of: |it| it },
-    Kind { name: "clean, free lens", is_free: true, of: |it| it },
-    Kind { name: "parallel", is_free: false, of: |it| PictureSimulation { tilt_rad: [0.0, 0.03], ..it } },
-    Kind {
+const KINDS: [SessionCase; 8] = [
+    SessionCase { name: "clean", is_free: false, of: |it| it },
+    SessionCase { name: "clean, free lens", is_free: true, of: |it| it },
+    SessionCase {
+        name: "parallel",
+        is_free: false,
+        of: |it| PictureSimulation { tilt_rad: [0.0, 0.03], ..it },
+    },
+    SessionCase {
         name: "one axis",
         is_free: false,
         of: |it| PictureSimulation { turns: false, tilt_rad: [-0.7, 0.7], ..it },
     },
-    Kind {
+    SessionCase {
         name: "one part",
         is_free: false,
         of: |it| PictureSimulation { part: [[0.2, 0.4], [0.2, 0.4]], distance_m: [1.2, 1.6], ..it },
     },
-    Kind {
+    SessionCase {
         name: "focal length",
         is_free: true,
         of: |it| PictureSimulation { tilt_rad: [0.0, 0.01], distance_m: [0.8, 0.801], ..it },
     },
-    Kind {
+    SessionCase {
         name: "centre",
         is_free: true,
         of: |it| PictureSimulation {
@@ -51,7 +55,7 @@ const KINDS: [Kind; 8] = [
             ..it
         },
     },
-    Kind {
+    SessionCase {
         name: "lens of a part",
         is_free: true,
         of: |it| PictureSimulation { part: [[0.2, 0.4], [0.2, 0.4]], distance_m: [1.2, 1.6], ..it },
@@ -65,7 +69,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     KINDS.iter().map(|kind| line(seed, kind)).collect()
 }
 
-fn line(seed: u64, kind: &Kind) -> Result<Value, Error> {
+fn line(seed: u64, kind: &SessionCase) -> Result<Value, Error> {
     let usual = simulation(seed.is_multiple_of(2), 0.0, 7000 + seed);
     let usual =
         (kind.of)(PictureSimulation { session: Simulation { count: COUNT, ..usual.session }, ..usual });
@@ -74,7 +78,7 @@ fn line(seed: u64, kind: &Kind) -> Result<Value, Error> {
         .run(&elbow())
         .or_else(|_| PictureSimulation { session: other, ..usual.clone() }.run(&elbow()))?;
     let camera = Camera { is_guessed: false, ..made.data.pictures.cameras[0].clone() };
-    let mut data = rebuilt(&made.data, 0..COUNT, (&[camera], &made.data.pictures.boards))?;
+    let mut data = rebuild_pictures(&made.data, 0..COUNT, (&[camera], &made.data.pictures.boards))?;
     let start = settle_pictures(&mut data, &made.nominal).all();
     let free = if kind.is_free { vec!["lens".to_owned()] } else { Vec::new() };
     let options = CalibrationOptions {
@@ -82,7 +86,7 @@ fn line(seed: u64, kind: &Kind) -> Result<Value, Error> {
         ..CalibrationOptions::default()
     };
     let mut line = json!({ "task": "degenerate", "seed": seed, "kind": kind.name, "in_hand": usual.in_hand, "start": start });
-    match calibrated(&made.nominal, &data, &options) {
+    match calibrate_session(&made.nominal, &data, &options) {
         Ok((calibration, _)) => {
             line["said"] = json!(calibration.warnings);
             line["determined"] =

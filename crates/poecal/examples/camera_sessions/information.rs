@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
 use poecal_arm::lie::Pose;
-use poecal_model::camera::{CommonError, moved};
+use poecal_model::camera::{CommonError, move_pose};
 use poecal_model::measurement::deviation;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::Photographed;
+use poecal_model::simulate::SimulatedPictures;
 
-use crate::session::{Session, places, registered, true_pose, whitenings};
+use crate::session::{PictureSession, places, register_deviations, true_pose, whitenings};
 
 /// Step of the differences, rad and m.
 const STEP: f64 = 1e-6;
@@ -26,11 +26,11 @@ pub(crate) struct Information {
 
 impl Information {
     /// Information by the known noise of the corners, and a common error of those of a picture.
-    pub(crate) fn from_session(session: &Session, common: CommonError) -> Self {
-        let Session { made, data, others, .. } = session;
+    pub(crate) fn from_session(session: &PictureSession, common: CommonError) -> Self {
+        let PictureSession { made, data, others, .. } = session;
         let unknowns = 0..6 * (made.actual.joints.len() + 2);
-        let changed: Vec<[Photographed; 2]> =
-            unknowns.map(|unknown| [STEP, -STEP].map(|step| changed(made, unknown, step))).collect();
+        let changed: Vec<[SimulatedPictures; 2]> =
+            unknowns.map(|unknown| [STEP, -STEP].map(|step| change_session(made, unknown, step))).collect();
         let mut information = DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS);
         for (row, whitening) in whitenings(session, common).iter().enumerate() {
             let by = whitening * derivative(&changed, data.readings(row));
@@ -53,7 +53,7 @@ impl Information {
     }
 
     /// Root mean squares of shift (m) and turn (rad): lower bound for any unbiased estimate.
-    pub(crate) fn least(&self) -> [f64; 2] {
+    pub(crate) fn least_errors(&self) -> [f64; 2] {
         let spreads = self.spreads();
         let mean = |first: usize| {
             let squares = spreads.iter().map(|it| (first..first + 3).map(|k| it[(k, k)]).sum::<f64>());
@@ -63,14 +63,14 @@ impl Information {
     }
 
     /// The information with the device's frame registered in the further configurations.
-    pub(crate) fn registered(&self, session: &Session) -> Self {
-        let derivatives = registered(&places(session), &self.derivatives);
+    pub(crate) fn with_registration(&self, session: &PictureSession) -> Self {
+        let derivatives = register_deviations(&places(session), &self.derivatives);
         Information { covariance: self.covariance.clone(), derivatives }
     }
 }
 
 /// Derivative of the pose of the held object relative to the fixed one, by motions of each axis, of the held object and of the fixed one.
-fn derivative(changed: &[[Photographed; 2]], readings: &[f64]) -> Derivative {
+fn derivative(changed: &[[SimulatedPictures; 2]], readings: &[f64]) -> Derivative {
     let mut found = Derivative::zeros();
     for (unknown, sides) in changed.iter().enumerate() {
         let [more, less] = sides.each_ref().map(|side| true_pose(side, &side.actual, readings));
@@ -79,7 +79,7 @@ fn derivative(changed: &[[Photographed; 2]], readings: &[f64]) -> Derivative {
     found
 }
 
-fn changed(made: &Photographed, unknown: usize, step: f64) -> Photographed {
+fn change_session(made: &SimulatedPictures, unknown: usize, step: f64) -> SimulatedPictures {
     let mut found = made.clone();
     let (part, k) = (unknown / 6, unknown % 6);
     let mut motion = Vector6::zeros();
@@ -87,8 +87,8 @@ fn changed(made: &Photographed, unknown: usize, step: f64) -> Photographed {
     let joints = made.actual.joints.len();
     match part.checked_sub(joints) {
         None => found.actual = with_moved_axis(&made.actual, part, &motion),
-        Some(0) => found.tip_from_held = moved(&made.tip_from_held, &motion),
-        Some(_) => found.base_from_other = moved(&made.base_from_other, &motion),
+        Some(0) => found.tip_from_held = move_pose(&made.tip_from_held, &motion),
+        Some(_) => found.base_from_other = move_pose(&made.base_from_other, &motion),
     }
     found
 }
@@ -97,7 +97,7 @@ fn changed(made: &Photographed, unknown: usize, step: f64) -> Photographed {
 fn with_moved_axis(robot: &Robot, joint: usize, motion: &Vector6<f64>) -> Robot {
     let mut found = robot.clone();
     let point = Pose::from_translation(robot.joints[joint].frame.translation);
-    let about = moved(&point, motion) * point.inverse();
-    found.joints[joint].screw = robot.joints[joint].screw.transformed(&about);
+    let about = move_pose(&point, motion) * point.inverse();
+    found.joints[joint].screw = robot.joints[joint].screw.transform(&about);
     found
 }

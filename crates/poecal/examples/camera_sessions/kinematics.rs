@@ -10,7 +10,7 @@ use poecal_model::simulate::{PictureSimulation, elbow};
 use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
-use crate::session::{COUNT, calibrated, common, hold_out_thirds, rebuilt, simulation};
+use crate::session::{COUNT, calibrate_session, common_error, hold_out_thirds, rebuild_pictures, simulation};
 
 /// Errors of each configuration, mm and mrad.
 const MILLIS: f64 = 0.5;
@@ -19,15 +19,18 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let in_hand = seed.is_multiple_of(2);
     let base = simulation(in_hand, MILLIS, 5000 + seed);
     let session = Simulation { count: COUNT, error_rotation_rad: 0.0, error_position_m: 0.0, ..base.session };
-    let simulation = PictureSimulation { session, common: common(MILLIS, in_hand), ..base };
+    let simulation = PictureSimulation { session, common: common_error(MILLIS, in_hand), ..base };
     let made = simulation.run(&elbow())?;
     let pictures = &made.data.pictures;
-    let mut data = rebuilt(&made.data, 0..COUNT, (&pictures.cameras, &pictures.boards))?;
+    let mut data = rebuild_pictures(&made.data, 0..COUNT, (&pictures.cameras, &pictures.boards))?;
     hold_out_thirds(&mut data);
     let said = settle_pictures(&mut data, &made.nominal).all();
     let blocks = BlockChoice { fix: vec!["joints".to_owned()], ..BlockChoice::default() };
-    let (calibration, fitted) =
-        calibrated(&made.nominal, &data, &CalibrationOptions { blocks, ..CalibrationOptions::default() })?;
+    let (calibration, fitted) = calibrate_session(
+        &made.nominal,
+        &data,
+        &CalibrationOptions { blocks, ..CalibrationOptions::default() },
+    )?;
     let lens = simulation.lens;
     let corners = |corners: &[Corner]| -> Vec<[f64; 3]> {
         corners.iter().map(|it| [f64::from(it.point), it.pixel.x, it.pixel.y]).collect()

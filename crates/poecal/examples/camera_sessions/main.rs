@@ -18,12 +18,12 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 /// Results of one seed.
-type Task = fn(u64) -> Result<Vec<Value>, poecal_numerics::error::Error>;
+type SeedTask = fn(u64) -> Result<Vec<Value>, poecal_numerics::error::Error>;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let number = |at: usize, usual: u64| words.get(at).and_then(|word| word.parse().ok()).unwrap_or(usual);
-    let tasks: [(&str, Task); 6] = [
+    let tasks: [(&str, SeedTask); 6] = [
         ("accuracy", accuracy::run),
         ("bounds", bounds::run),
         ("setups", setups::run),

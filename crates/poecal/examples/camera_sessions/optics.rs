@@ -12,7 +12,8 @@ use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
 use crate::session::{
-    COUNT, Session, all_rows, judged, simulate_session, places, rebuilt, registered, rms, shape, simulation,
+    COUNT, PictureSession, all_rows, judge_session, places, rebuild_pictures, register_deviations, rms,
+    shape, simulate_session, simulation,
 };
 
 /// The stretch of a board along x.
@@ -29,10 +30,10 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let mut lines = Vec::new();
     let true_lens = poecal_model::simulate::PictureSimulation { lens, ..base };
     let session = simulate_session(true_lens)?;
-    let (_, _, known) = judged(&session, &session.data, &all_rows())?;
+    let (_, _, known) = judge_session(&session, &session.data, &all_rows())?;
     let known = rms(&shape(&session, &known))[0];
     let numbers = lens.numbers();
-    let mut sign = || if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
+    let mut sign = || if random::uniform_number(&mut generator) < 0.5 { -1.0 } else { 1.0 };
     let mut wrong = numbers;
     let (focal, centre) = (1.0 + 0.03 * sign(), [20.0 * sign(), 20.0 * sign()]);
     (wrong[0], wrong[1]) = (numbers[0] * focal, numbers[1] * focal);
@@ -72,8 +73,8 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
 }
 
 /// Root mean square error of the arm, with the device's frame registered.
-fn arm_m(session: &Session, deviations: &[Vector6<f64>]) -> f64 {
-    rms(&registered(&places(session), deviations))[0]
+fn arm_m(session: &PictureSession, deviations: &[Vector6<f64>]) -> f64 {
+    rms(&register_deviations(&places(session), deviations))[0]
 }
 
 fn with_points(board: &Board, mut change: impl FnMut(&mut nalgebra::Vector3<f64>)) -> Board {
@@ -86,15 +87,15 @@ fn with_points(board: &Board, mut change: impl FnMut(&mut nalgebra::Vector3<f64>
 fn line(
     seed: u64,
     (name, free): (&str, &[&str]),
-    (session, given): (&Session, (&[Camera], &[Board])),
+    (session, given): (&PictureSession, (&[Camera], &[Board])),
     (known, truth): (f64, impl Fn(&PictureNumber) -> f64),
 ) -> Result<Value, Error> {
-    let mut data = rebuilt(&session.data, 0..COUNT, given)?;
+    let mut data = rebuild_pictures(&session.data, 0..COUNT, given)?;
     let said = settle_pictures(&mut data, &session.made.nominal).all();
     let blocks =
         BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
     let options = CalibrationOptions { blocks, ..all_rows() };
-    let (calibration, data, deviations) = judged(session, &data, &options)?;
+    let (calibration, data, deviations) = judge_session(session, &data, &options)?;
     let shape_m = rms(&shape(session, &deviations))[0];
     let found = &data.pictures.found;
     let off = |number: &PictureNumber| (number.found - truth(number)) / number.deviation;

@@ -7,14 +7,14 @@ use poecal_calibrate::{Calibration, calibrate_repairing};
 use poecal_fit::start::settle_pictures;
 use poecal_fit::uncertainty::PredictedError;
 use poecal_model::camera::{Board, Camera, Centre, CommonError, Picture};
-use poecal_model::measurement::{Dataset, Set, Source, deviation, picture_whitening};
+use poecal_model::measurement::{Dataset, RowLocation, Set, deviation, picture_whitening};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::Simulation;
-use poecal_model::simulate::{Photographed, PictureSimulation, elbow};
+use poecal_model::simulate::{PictureSimulation, SimulatedPictures, elbow};
 use poecal_numerics::error::{Error, ErrorKind};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::model::{Model, ModelSource};
-use poecal_results::predictions::{PredictionFrame, predicted};
+use poecal_results::predictions::{PredictionFrame, predict_readings};
 
 /// Pictures of a session.
 pub(crate) const COUNT: usize = 60;
@@ -24,9 +24,9 @@ pub(crate) const FURTHER: usize = 200;
 const ERRORS: (f64, f64) = (3e-3, 1e-3);
 
 /// A session of [`COUNT`] pictures, and [`FURTHER`] of the same robot.
-pub(crate) struct Session {
+pub(crate) struct PictureSession {
     pub(crate) simulation: PictureSimulation,
-    pub(crate) made: Photographed,
+    pub(crate) made: SimulatedPictures,
     /// The pictures that are fitted.
     pub(crate) data: Dataset,
     /// Further pictures.
@@ -34,13 +34,13 @@ pub(crate) struct Session {
 }
 
 /// An error of each configuration, of the object on the tip and about it.
-pub(crate) fn common(millis: f64, in_hand: bool) -> CommonError {
+pub(crate) fn common_error(millis: f64, in_hand: bool) -> CommonError {
     let about = if in_hand { Centre::Camera } else { Centre::Board };
     CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, about, corners: 1.0 }
 }
 
 /// A usual session of the elbow.
-pub(crate) fn session(in_hand: bool, millis: f64, seed: u64) -> Result<Session, Error> {
+pub(crate) fn session(in_hand: bool, millis: f64, seed: u64) -> Result<PictureSession, Error> {
     let simulation = simulation(in_hand, millis, seed);
     simulate_session(simulation)
 }
@@ -54,26 +54,29 @@ pub(crate) fn simulation(in_hand: bool, millis: f64, seed: u64) -> PictureSimula
         error_position_m: ERRORS.1,
         ..Simulation::default()
     };
-    PictureSimulation { common: common(millis, in_hand), ..PictureSimulation::usual(session, in_hand) }
+    PictureSimulation {
+        common: common_error(millis, in_hand),
+        ..PictureSimulation::with_usual_camera(session, in_hand)
+    }
 }
 
 /// The session of a simulation; of another seed if the robot cannot be moved so that the camera sees the board.
-pub(crate) fn simulate_session(simulation: PictureSimulation) -> Result<Session, Error> {
+pub(crate) fn simulate_session(simulation: PictureSimulation) -> Result<PictureSession, Error> {
     let other = Simulation { seed: simulation.session.seed + 1_000_000, ..simulation.session };
     let again = PictureSimulation { session: other, ..simulation.clone() };
     let mut made = simulation.run(&elbow()).or_else(|_| again.run(&elbow()))?;
     let (cameras, boards) = (made.data.pictures.cameras.clone(), made.data.pictures.boards.clone());
-    let part = |rows| rebuilt(&made.data, rows, (&cameras, &boards));
+    let part = |rows| rebuild_pictures(&made.data, rows, (&cameras, &boards));
     let mut data = part(0..COUNT)?;
     let mut others = part(COUNT..COUNT + FURTHER)?;
     settle_pictures(&mut data, &made.nominal);
     settle_pictures(&mut others, &made.nominal);
     made.data = Dataset::new(made.data.reading_names().to_vec());
-    Ok(Session { simulation, made, data, others })
+    Ok(PictureSession { simulation, made, data, others })
 }
 
 /// Some pictures as read by a user with these cameras and boards.
-pub(crate) fn rebuilt(
+pub(crate) fn rebuild_pictures(
     data: &Dataset,
     rows: std::ops::Range<usize>,
     (cameras, boards): (&[Camera], &[Board]),
@@ -87,7 +90,7 @@ pub(crate) fn rebuilt(
         let added = found.push_picture(
             data.readings(row),
             picture,
-            (data.observations[row].set, Source::default()),
+            (data.observations[row].set, RowLocation::default()),
         )?;
         added.map_err(|reason| Error::new(ErrorKind::Problem, reason))?;
     }
@@ -103,34 +106,34 @@ pub(crate) fn hold_out_thirds(data: &mut Dataset) {
 }
 
 /// The pose of the held object in the frame of the fixed one.
-pub(crate) fn true_pose(made: &Photographed, robot: &Robot, readings: &[f64]) -> Pose {
+pub(crate) fn true_pose(made: &SimulatedPictures, robot: &Robot, readings: &[f64]) -> Pose {
     made.base_from_other.inverse() * robot.forward_kinematics(readings) * made.tip_from_held
 }
 
 /// Predictions of a calibration for configurations: poses of the device's object in the device's frame, with their uncertainty.
-pub(crate) fn delivered(
+pub(crate) fn delivered_poses(
     calibration: &Calibration,
     data: &Dataset,
     readings: &[f64],
 ) -> Result<(Vec<Pose>, Vec<PredictedError>), Error> {
     let file = CalibrationFile::new(calibration, data, Inputs::default());
-    let file = file.corrected().unwrap_or(file);
+    let file = file.corrected_file().unwrap_or(file);
     let robot = file.robot()?;
     let path = "calibration.json".into();
     let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path };
-    let found = predicted(&model, readings, PredictionFrame::Device, None, true)?;
+    let found = predict_readings(&model, readings, PredictionFrame::Device, None, true)?;
     Ok((found.poses, found.doubts.unwrap_or_default().into_iter().map(|(error, _)| error).collect()))
 }
 
 /// Deviations of predicted poses from the true ones.
-pub(crate) fn deviations(session: &Session, poses: &[Pose]) -> Vec<Vector6<f64>> {
-    let Session { made, others, .. } = session;
+pub(crate) fn deviations(session: &PictureSession, poses: &[Pose]) -> Vec<Vector6<f64>> {
+    let PictureSession { made, others, .. } = session;
     let truth = (0..others.len()).map(|row| true_pose(made, &made.actual, others.readings(row)));
     truth.zip(poses).map(|(truth, pose)| deviation(pose, &truth)).collect()
 }
 
 /// Deviations with the device's frame registered for the smallest shifts: the remaining errors of the arm. Linear, since they are small.
-pub(crate) fn registered<const N: usize>(
+pub(crate) fn register_deviations<const N: usize>(
     places: &[Vector3<f64>],
     deviations: &[SMatrix<f64, 6, N>],
 ) -> Vec<SMatrix<f64, 6, N>> {
@@ -151,8 +154,8 @@ pub(crate) fn registered<const N: usize>(
 
 /// Remaining shifts with the device's frame, the tool and the common size fitted. The size of a free board is determined no better than that of the
 /// robot, and its frame is that of its points as a whole.
-pub(crate) fn shape(session: &Session, deviations: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
-    let Session { made, others, .. } = session;
+pub(crate) fn shape(session: &PictureSession, deviations: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
+    let PictureSession { made, others, .. } = session;
     let columns = |row: usize| {
         let pose = true_pose(made, &made.actual, others.readings(row));
         let mut by = SMatrix::<f64, 3, 10>::zeros();
@@ -179,8 +182,8 @@ pub(crate) fn shape(session: &Session, deviations: &[Vector6<f64>]) -> Vec<Vecto
 }
 
 /// Positions of the further true poses.
-pub(crate) fn places(session: &Session) -> Vec<Vector3<f64>> {
-    let Session { made, others, .. } = session;
+pub(crate) fn places(session: &PictureSession) -> Vec<Vector3<f64>> {
+    let PictureSession { made, others, .. } = session;
     let place = |row| true_pose(made, &made.actual, others.readings(row)).translation;
     (0..others.len()).map(place).collect()
 }
@@ -200,7 +203,7 @@ pub(crate) fn all_rows() -> CalibrationOptions {
 }
 
 /// A calibration, by the procedure of the program, with the data as they were fitted.
-pub(crate) fn calibrated(
+pub(crate) fn calibrate_session(
     robot: &Robot,
     data: &Dataset,
     options: &CalibrationOptions,
@@ -210,24 +213,24 @@ pub(crate) fn calibrated(
 }
 
 /// A calibration with its data, and its deviations in the further configurations.
-pub(crate) fn judged(
-    session: &Session,
+pub(crate) fn judge_session(
+    session: &PictureSession,
     data: &Dataset,
     options: &CalibrationOptions,
 ) -> Result<(Calibration, Dataset, Vec<Vector6<f64>>), Error> {
-    let (calibration, data) = calibrated(&session.made.nominal, data, options)?;
-    let (poses, _) = delivered(&calibration, &data, session.others.all_readings())?;
+    let (calibration, data) = calibrate_session(&session.made.nominal, data, options)?;
+    let (poses, _) = delivered_poses(&calibration, &data, session.others.all_readings())?;
     Ok((calibration, data, deviations(session, &poses)))
 }
 
 /// Whitening matrices of the rows of a session by the known noise of corners at the true poses, with a common error.
-pub(crate) fn whitenings(session: &Session, common: CommonError) -> Vec<Matrix6<f64>> {
-    let Session { simulation, made, data, .. } = session;
+pub(crate) fn whitenings(session: &PictureSession, common: CommonError) -> Vec<Matrix6<f64>> {
+    let PictureSession { simulation, made, data, .. } = session;
     let of = |picture: &Picture| {
         let mut exact = picture.clone();
         exact.corners.iter_mut().for_each(|corner| corner.weight = 1.0);
         let pose = true_pose(made, &made.actual, data.readings(picture.row as usize));
-        let seen = exact.directed(&pose);
+        let seen = exact.directed_measurement(&pose);
         let pictures =
             poecal_model::camera::Pictures { sigma_px: simulation.noise_px, ..data.pictures.clone() };
         let information = pictures.view(&exact).map(|view| view.information(&seen)).unwrap_or_default();

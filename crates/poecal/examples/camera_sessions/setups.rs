@@ -5,23 +5,25 @@ use poecal_fit::start::settle_pictures;
 use poecal_numerics::error::Error;
 use serde_json::{Value, json};
 
-use crate::scene::{Place, Scene};
-use crate::session::calibrated;
+use crate::scene::{CameraMount, CameraScene};
+use crate::session::calibrate_session;
 
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
-    let Scene { place, nominal, mut data } = Scene::random(seed)?;
+    let CameraScene { place, nominal, mut data } = CameraScene::random(seed)?;
     let said = settle_pictures(&mut data, &nominal).all();
     let right = match place {
-        Place::Hand => said.first().is_some_and(|it| it.contains("on the last link, and the board stays")),
-        Place::Beside => said.first().is_some_and(|it| it.contains("beside the robot")),
-        Place::Head => said.is_empty(),
+        CameraMount::Hand => {
+            said.first().is_some_and(|it| it.contains("on the last link, and the board stays"))
+        }
+        CameraMount::Beside => said.first().is_some_and(|it| it.contains("beside the robot")),
+        CameraMount::Head => said.is_empty(),
     };
     let prismatic = nominal.joints.iter().filter(|joint| joint.screw.is_prismatic()).count();
     let mut line = json!({
         "task": "setups", "seed": seed, "place": format!("{place:?}"), "joints": nominal.joints.len(),
         "prismatic": prismatic, "pictures": data.len(), "right": right, "start": said,
     });
-    match calibrated(&nominal, &data, &CalibrationOptions::default()) {
+    match calibrate_session(&nominal, &data, &CalibrationOptions::default()) {
         Ok((calibration, _)) => {
             let accuracy = &calibration.accuracy;
             let px = |of: &poecal_calibrate::ModelAccuracy| {

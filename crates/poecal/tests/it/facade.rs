@@ -107,7 +107,7 @@ fn documentation(place: &Path, name: &str) -> Option<String> {
 }
 
 /// A path in a module's form, completed with its crate.
-fn whole(module: &str, from: &str) -> String {
+fn absolute_path(module: &str, from: &str) -> String {
     let own = module.split("::").next().unwrap_or_default();
     match from.split_once("::").unwrap_or((from, "")) {
         ("crate", rest) => format!("{own}::{rest}"),
@@ -140,7 +140,7 @@ fn few_types_are_shown_and_each_has_an_example() {
         let (from, name) = module.rsplit_once("::").unwrap();
         assert!(shown.contains(&(from.to_owned(), name.to_owned())), "{module}");
         let own = handed_on(&place(module).join("mod.rs"));
-        shown.extend(own.into_iter().map(|(from, name)| (whole(module, &from), name)));
+        shown.extend(own.into_iter().map(|(from, name)| (absolute_path(module, &from), name)));
     }
     shown.push(("poecal_numerics::solve".into(), "LeastSquares".into()));
     for (_, name) in &mut shown {

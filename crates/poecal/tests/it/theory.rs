@@ -19,7 +19,7 @@ fn inverse_left_jacobian_has_the_stated_coefficients() {
         let slope = 0.5 / half.tan() - 0.5 * half / half.sin().powi(2);
         let b2 = slope / (2.0 * angle) - 2.0 * (gamma - 1.0) / angle.powi(2);
         let b4 = (gamma - 1.0) / angle.powi(4) + b2 / angle.powi(2);
-        let ad = twist.ad();
+        let ad = twist.adjoint_matrix();
         let ad2 = ad * ad;
         let inverse = Matrix6::identity() - ad * 0.5 + ad2 * b2 + ad2 * ad2 * b4;
         let error = (inverse * twist.left_jacobian() - Matrix6::identity()).norm();
@@ -35,7 +35,7 @@ fn normalisation_does_not_depend_on_the_frame() {
     let pose = Pose::from_xyz_rpy([0.4, -1.0, 2.0], [0.3, -0.8, 2.5]);
     let twist = Twist::new(Vector3::new(0.3, -0.7, 0.2), Vector3::new(0.5, 0.4, -0.9));
     let there = Screw::project(&pose.transform(&twist)).unwrap();
-    let back = Screw::project(&twist).unwrap().transformed(&pose);
+    let back = Screw::project(&twist).unwrap().transform(&pose);
     assert!((there.twist().to_vector() - back.twist().to_vector()).norm() < 1e-14);
 }
 

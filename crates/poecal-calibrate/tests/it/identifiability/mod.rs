@@ -10,7 +10,7 @@ use poecal_fit::analysis::{Cause, Identifiability, PlannedSession, identify};
 use poecal_fit::parameters::{Parameter, ValueTerm, screw_axes};
 use poecal_model::measurement::{Dataset, Measurement, Quantity};
 use poecal_model::robot::{JointKind, Robot, Term};
-use poecal_model::simulate::{Kind, Simulation, elbow, random, random_chain, random_configuration};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, random, random_chain, random_configuration};
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -32,7 +32,7 @@ impl Case {
         (0..self.count).map(row).collect()
     }
 
-    fn foreseen(&self) -> Identifiability {
+    fn plan_case(&self) -> Identifiability {
         let session = PlannedSession { kind: self.kind, ..PlannedSession::default() };
         identify(&(self.robot)(), &self.readings(7).concat(), &session).unwrap().identifiability
     }
@@ -49,7 +49,7 @@ fn words(found: &Identifiability) -> String {
 #[test]
 fn what_is_left_open_is_said_in_words() {
     for case in CASES {
-        let found = case.foreseen();
+        let found = case.plan_case();
         let told = words(&found);
         println!("{}\n{told}\n", case.name);
         // The reported directions are the undetermined ones, no more and no fewer.
@@ -61,10 +61,10 @@ fn what_is_left_open_is_said_in_words() {
 }
 
 /// Measurements of a case's robot, with errors of 1° and 2 mm in each joint, by a device anywhere.
-fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
+fn measure_case(case: &Case, noise: f64) -> (Robot, Dataset) {
     let nominal = (case.robot)();
     let mut generator = ChaCha8Rng::seed_from_u64(11);
-    let actual = Simulation::default().perturbed(&nominal, &mut generator);
+    let actual = Simulation::default().perturb(&nominal, &mut generator);
     let device_from_base = Pose::from_xyz_rpy([1.5, -2.0, 0.5], [0.3, -1.0, 2.0]);
     let usual = PlannedSession::default().noise;
     let mut data = Dataset::new(nominal.reading_names());
@@ -74,7 +74,7 @@ fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
         let turn =
             rotation::exp(&(random::normal_vector(&mut generator) * noise * usual[Quantity::Rotation]));
         pose.rotation = turn * pose.rotation;
-        let measurement = if case.kind == Kind::POINT {
+        let measurement = if case.kind == SessionKind::POINT {
             Measurement::point(pose.translation)
         } else {
             Measurement::of_pose(&pose)
@@ -93,7 +93,7 @@ fn fitted_cases() -> impl ParallelIterator<Item = &'static Case> {
 fn what_is_left_open_changes_no_prediction() {
     let worst: Vec<(f64, &str)> = fitted_cases()
         .map(|case| {
-            let (nominal, data) = measured(case, 0.0);
+            let (nominal, data) = measure_case(case, 0.0);
             // Data without noise need no prior.
             let options = CalibrationOptions { tolerance: None, ..geometry() };
             let result = calibrate(&nominal, &data, &options).unwrap();
@@ -113,10 +113,10 @@ fn what_is_left_open_changes_no_prediction() {
 fn a_calibration_says_the_same_as_what_was_foreseen() {
     let told: Vec<(&str, Identifiability, Identifiability)> = fitted_cases()
         .map(|case| {
-            let (nominal, data) = measured(case, 1.0);
+            let (nominal, data) = measure_case(case, 1.0);
             let options = CalibrationOptions { held_out: Some(0.0), ..Default::default() };
             let found = calibrate(&nominal, &data, &options).unwrap().identifiability;
-            (case.name, case.foreseen(), found)
+            (case.name, case.plan_case(), found)
         })
         .collect();
     let mut same = 0;
@@ -144,8 +144,8 @@ fn a_calibration_says_the_same_as_what_was_foreseen() {
 #[test]
 fn an_unknown_that_is_open_is_not_determined() {
     let case = CASES.iter().find(|case| case.name == "never moved from zero").unwrap();
-    let found = case.foreseen();
-    let determined = found.spectrum.determined();
+    let found = case.plan_case();
+    let determined = found.spectrum.determined_unknowns();
     println!("{determined:?}");
     // At zero a joint's axis is undetermined, and nothing else is.
     assert_eq!(determined.iter().filter(|&&known| !known).count(), 4);
@@ -158,7 +158,7 @@ fn an_unknown_that_is_open_is_not_determined() {
 
 #[test]
 fn offsets_beside_screws_are_structure_and_not_a_defect_of_the_data() {
-    let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+    let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let with_offsets = Formulation {
         joint_parameters: |kinds| {
             let offset = |(joint, &kind)| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::OFFSET });
@@ -208,7 +208,8 @@ fn joints_that_stand_still_are_named_and_no_others() {
     for seed in robots.seeds() {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let robot = random_chain(2 + (seed % 8) as usize, seed);
-        let still: Vec<bool> = robot.joints.iter().map(|_| random::uniform(&mut generator) < 0.3).collect();
+        let still: Vec<bool> =
+            robot.joints.iter().map(|_| random::uniform_number(&mut generator) < 0.3).collect();
         let at = random_configuration(&robot, &mut generator);
         let jitter = if seed % 2 == 0 { 0.0 } else { 1.0 };
         let mut readings = Vec::new();
@@ -219,11 +220,12 @@ fn joints_that_stand_still_are_named_and_no_others() {
                     JointKind::Revolute => 3e-4,
                     JointKind::Prismatic => 1e-5,
                 };
-                *value = at[joint] + jitter * amplitude * (2.0 * random::uniform(&mut generator) - 1.0);
+                *value =
+                    at[joint] + jitter * amplitude * (2.0 * random::uniform_number(&mut generator) - 1.0);
             }
             readings.extend(row);
         }
-        let kind = if seed % 3 == 0 { Kind::POINT } else { Kind::POSE };
+        let kind = if seed % 3 == 0 { SessionKind::POINT } else { SessionKind::POSE };
         let session = PlannedSession { kind, ..PlannedSession::default() };
         let found = identify(&robot, &readings, &session).unwrap().identifiability;
         let named = found.unidentifiable.iter().filter(|it| it.cause == Cause::StoodStill);

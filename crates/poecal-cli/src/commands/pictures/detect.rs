@@ -5,14 +5,17 @@ use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use poecal_detect::{Detector, Found, Gray, Picture, Rejected, Spec, Turned, Undecodable, preview};
+use poecal_detect::{
+    BoardSpec, DetectedBoard, Detector, Gray, GrayPicture, PictureError, PictureOrientation, RejectionReason,
+    preview,
+};
 use poecal_import::board_of_file;
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_results::output::{Existing, FilePlace};
+use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_storage::csv_text::cell;
 use poecal_storage::disk::{self, ObjectKind};
 use poecal_storage::folder;
-use poecal_storage::limits::{self, Limit};
+use poecal_storage::limits::{self, ResourceLimit};
 use rayon::prelude::*;
 
 use super::board::board;
@@ -28,13 +31,13 @@ const TRIED: usize = 3;
 const NAMED: usize = 6;
 
 /// A picture with its detected corners.
-struct Seen {
+struct DetectedPicture {
     /// Its name in the table: that of its file.
     name: String,
     path: PathBuf,
     size_px: [usize; 2],
-    turned: Turned,
-    found: std::result::Result<Found, Rejected>,
+    turned: PictureOrientation,
+    found: std::result::Result<DetectedBoard, RejectionReason>,
     /// Its levels if they are needed again.
     gray: Option<Gray>,
 }
@@ -46,7 +49,7 @@ pub(crate) fn detect(arguments: &Detect, console: &Console) -> Result<u8> {
     let stated = arguments.board.as_deref().unwrap_or_default();
     let of_file = board_of_file(stated)?;
     let words = of_file.as_ref().map_or(stated, |board| &board.words);
-    let spec: Spec = words.parse().map_err(|error| refused(&error))?;
+    let spec: BoardSpec = words.parse().map_err(|error| option_error(&error))?;
     if let Some(board) = &of_file {
         console.remark(&board.said);
     }
@@ -56,38 +59,38 @@ pub(crate) fn detect(arguments: &Detect, console: &Console) -> Result<u8> {
     let place = arguments.place.reserve(&inputs, console)?;
     let names = names(&paths)?;
     let previews = previews(arguments, &names, (&inputs, console))?;
-    let detector = Detector::new(&spec).with_most_dots(Limit::Dots.most_held());
+    let detector = Detector::new(&spec).with_most_dots(ResourceLimit::Dots.most_held());
     // Pictures are read by other threads.
-    let limits = limits::here();
+    let limits = limits::current_limits();
     let keeps = !previews.is_empty();
-    let all: Vec<Seen> = paths
+    let all: Vec<DetectedPicture> = paths
         .par_iter()
         .zip(&names)
-        .map(|(path, name)| limits::on(limits, || seen(&detector, path, name, keeps)))
+        .map(|(path, name)| limits::run_with_limits(limits, || detect_in_file(&detector, path, name, keeps)))
         .collect::<Result<_>>()?;
     refuse_sizes(&all)?;
     warn(&all, console);
     let corners: usize = all.iter().filter_map(|it| it.found.as_ref().ok()).map(|it| it.corners.len()).sum();
     if corners == 0 {
-        return Err(nothing(&detector, &all));
+        return Err(no_board_error(&detector, &all));
     }
     for (place, one) in previews.into_iter().zip(&all) {
         let Some(gray) = &one.gray else { continue };
         let found = one.found.as_ref().map_or(&[][..], |found| &found.corners);
-        place.write_bytes(&preview(gray, found).map_err(|error| refused(&error))?)?;
+        place.write_bytes(&preview(gray, found).map_err(|error| option_error(&error))?)?;
     }
     console.deliver(table(&spec, &all), place)?;
     conclude(&spec, &all, corners, (arguments, console));
     Ok(DONE)
 }
 
-fn refused(error: &impl std::fmt::Display) -> Error {
+fn option_error(error: &impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Option, error.to_string())
 }
 
 /// The files that were named, and the pictures of folders in the order of their names.
 fn pictures(named: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
-    let disk = disk::here();
+    let disk = disk::current_disk();
     let mut found = Vec::new();
     for path in named {
         let is_folder = disk.follow(path).is_ok_and(|object| object.kind == ObjectKind::Folder);
@@ -106,7 +109,7 @@ fn pictures(named: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
             let message = "found no picture in this folder, expected files that end in .png, .jpg or .jpeg";
             return Err(Error::new(ErrorKind::File, message).in_file(path));
         }
-        own.sort_by_cached_key(|path| natural(&name_of(path)));
+        own.sort_by_cached_key(|path| natural_sort_key(&name_of(path)));
         found.extend(own);
     }
     Ok(found)
@@ -122,7 +125,7 @@ fn name_of(path: &Path) -> String {
 }
 
 /// A name by which 10 comes after 9: its digits with zeros before them.
-fn natural(name: &str) -> String {
+fn natural_sort_key(name: &str) -> String {
     let mut found = String::new();
     let mut digits = String::new();
     for letter in name.chars() {
@@ -159,46 +162,47 @@ fn previews(
     arguments: &Detect,
     names: &[String],
     (inputs, console): (&[&Path], &Console),
-) -> Result<Vec<FilePlace>> {
+) -> Result<Vec<ReservedFile>> {
     let Some(folder) = &arguments.preview else { return Ok(Vec::new()) };
-    let disk = disk::here();
+    let disk = disk::current_disk();
     if disk.follow(folder).is_err() {
         let unmade = |error| Error::new(ErrorKind::File, format!("cannot be made: {error}")).in_file(folder);
         disk.create_folder(folder).map_err(unmade)?;
     }
-    let existing = Existing::forced(arguments.place.force);
+    let existing = ExistingFiles::from_switch(arguments.place.force);
     let place = |name: &String| {
         let path = folder.join(name).with_extension("png");
-        FilePlace::reserve(&path, existing, inputs, &mut console.warner())
+        ReservedFile::reserve(&path, existing, inputs, &mut console.warner())
     };
     names.iter().map(place).collect()
 }
 
-fn seen(detector: &Detector, path: &Path, name: &str, keeps: bool) -> Result<Seen> {
+fn detect_in_file(detector: &Detector, path: &Path, name: &str, keeps: bool) -> Result<DetectedPicture> {
     let unread = |message: String| Error::new(ErrorKind::File, message).in_file(path);
     let mut bytes = Vec::new();
-    let file = disk::here().open(path).map_err(|error| unread(format!("cannot be read: {error}")))?;
-    let read = file.take(Limit::Picture.most() + 1).read_to_end(&mut bytes);
+    let file = disk::current_disk().open(path).map_err(|error| unread(format!("cannot be read: {error}")))?;
+    let read = file.take(ResourceLimit::Picture.value() + 1).read_to_end(&mut bytes);
     read.map_err(|error| unread(format!("cannot be read: {error}")))?;
-    if bytes.len() as u64 > Limit::Picture.most() {
-        return Err(unread(Limit::Picture.exceeded("one picture")));
+    if bytes.len() as u64 > ResourceLimit::Picture.value() {
+        return Err(unread(ResourceLimit::Picture.exceeded_error("one picture")));
     }
-    let decoded = Picture::decode_up_to(&bytes, path, Limit::Pixels.most());
-    let Picture { gray, turned } = decoded.map_err(|Undecodable { error, too_large }| match too_large {
-        Some([width, height]) => {
-            unread(Limit::Pixels.sentence(&format!("a picture of {width} x {height} pixels")))
-        }
-        None => refused(&error),
-    })?;
+    let decoded = GrayPicture::decode_up_to(&bytes, path, ResourceLimit::Pixels.value());
+    let GrayPicture { gray, turned } =
+        decoded.map_err(|PictureError { error, too_large }| match too_large {
+            Some([width, height]) => {
+                unread(ResourceLimit::Pixels.sentence(&format!("a picture of {width} x {height} pixels")))
+            }
+            None => option_error(&error),
+        })?;
     drop(bytes);
     let found = detector.detect(&gray);
     let size_px = [gray.width(), gray.height()];
     let gray = (keeps || found.is_err()).then_some(gray);
-    Ok(Seen { name: name.to_owned(), path: path.to_owned(), size_px, turned, found, gray })
+    Ok(DetectedPicture { name: name.to_owned(), path: path.to_owned(), size_px, turned, found, gray })
 }
 
 /// Pictures of one camera have one size.
-fn refuse_sizes(all: &[Seen]) -> Result<()> {
+fn refuse_sizes(all: &[DetectedPicture]) -> Result<()> {
     let Some(first) = all.first() else { return Ok(()) };
     let Some(other) = all.iter().find(|it| it.size_px != first.size_px) else { return Ok(()) };
     let ([a, b], [c, d]) = (first.size_px, other.size_px);
@@ -219,7 +223,7 @@ fn first_few(names: &[String]) -> String {
 }
 
 /// Reports the pictures that were turned, and those that are left out with the reason.
-fn warn(all: &[Seen], console: &Console) {
+fn warn(all: &[DetectedPicture], console: &Console) {
     let turned: Vec<String> = all
         .iter()
         .filter(|it| it.turned.is_turned())
@@ -228,7 +232,7 @@ fn warn(all: &[Seen], console: &Console) {
     if !turned.is_empty() {
         console.warning(format!(
             "turned {} as their files say (EXIF): {}; the lens must be that of pictures which are turned so",
-            plural(turned.len(), "picture"),
+            pluralize(turned.len(), "picture"),
             first_few(&turned)
         ));
     }
@@ -244,12 +248,12 @@ fn warn(all: &[Seen], console: &Console) {
     }
 }
 
-fn plural(count: usize, word: &str) -> String {
+fn pluralize(count: usize, word: &str) -> String {
     if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }
 
 /// Error for a board in no picture: the reason, and another board that was found.
-fn nothing(detector: &Detector, all: &[Seen]) -> Error {
+fn no_board_error(detector: &Detector, all: &[DetectedPicture]) -> Error {
     let tried: Vec<&Gray> = all.iter().filter_map(|it| it.gray.as_ref()).take(TRIED).collect();
     let why: Vec<String> =
         all.iter().filter_map(|it| Some(format!("{}: {}", it.name, it.found.as_ref().err()?))).collect();
@@ -257,7 +261,7 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
         Some(other) => format!(
             "but {} shows in {}: take --board {}",
             other.spec,
-            plural(other.pictures, "picture"),
+            pluralize(other.pictures, "picture"),
             other.spec
         ),
         None => format!("nor {}: check the board, and look at the pictures", tried_too(detector.spec())),
@@ -265,19 +269,19 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
     let message = format!(
         "found the board {} in none of {} ({}), {help}",
         detector.spec(),
-        plural(all.len(), "picture"),
+        pluralize(all.len(), "picture"),
         first_few(&why)
     );
     Error::new(ErrorKind::Option, message)
 }
 
 /// Alternatives that are tried in place of a board.
-fn tried_too(spec: &Spec) -> &'static str {
-    if matches!(spec, Spec::Circles(_)) {
+fn tried_too(spec: &BoardSpec) -> &'static str {
+    if matches!(spec, BoardSpec::Circles(_)) {
         "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way"
-    } else if matches!(spec, Spec::Tags(_)) {
+    } else if matches!(spec, BoardSpec::Tags(_)) {
         "tags of other families"
-    } else if matches!(spec, Spec::AprilGrid(_)) {
+    } else if matches!(spec, BoardSpec::AprilGrid(_)) {
         "one with columns and rows exchanged, or with tags of other families"
     } else {
         "one with columns and rows exchanged, of the other pattern or with other markers"
@@ -285,12 +289,12 @@ fn tried_too(spec: &Spec) -> &'static str {
 }
 
 /// Name of the points of a board.
-fn points(spec: &Spec) -> &'static str {
-    if matches!(spec, Spec::Circles(_)) { "dots" } else { "corners" }
+fn points(spec: &BoardSpec) -> &'static str {
+    if matches!(spec, BoardSpec::Circles(_)) { "dots" } else { "corners" }
 }
 
 /// The corners as `poecal calibrate` reads them.
-fn table(spec: &Spec, all: &[Seen]) -> String {
+fn table(spec: &BoardSpec, all: &[DetectedPicture]) -> String {
     let size = all.first().map_or([0, 0], |it| it.size_px);
     let mut text = format!(
         "# {} of {spec} in pictures of {} x {} pixels\nimage,target,u[px],v[px],sigma[px]\n",
@@ -317,8 +321,13 @@ fn table(spec: &Spec, all: &[Seen]) -> String {
 }
 
 /// Prints a summary and the next step.
-fn conclude(spec: &Spec, all: &[Seen], corners: usize, (arguments, console): (&Detect, &Console)) {
-    let found: Vec<&Found> = all.iter().filter_map(|it| it.found.as_ref().ok()).collect();
+fn conclude(
+    spec: &BoardSpec,
+    all: &[DetectedPicture],
+    corners: usize,
+    (arguments, console): (&Detect, &Console),
+) {
+    let found: Vec<&DetectedBoard> = all.iter().filter_map(|it| it.found.as_ref().ok()).collect();
     let mut sigmas: Vec<f64> = found.iter().flat_map(|it| &it.corners).map(|it| it.sigma_px).collect();
     sigmas.sort_by(f64::total_cmp);
     let sigma = sigmas.get(sigmas.len() / 2).copied().unwrap_or(0.0);
@@ -326,10 +335,10 @@ fn conclude(spec: &Spec, all: &[Seen], corners: usize, (arguments, console): (&D
         "found {corners} {} in {} of {}, to {sigma:.2} px in the median",
         points(spec),
         found.len(),
-        plural(all.len(), "picture")
+        pluralize(all.len(), "picture")
     ));
     if found.iter().any(|it| it.turnable) {
-        console.remark(if matches!(spec, Spec::Circles(_)) {
+        console.remark(if matches!(spec, BoardSpec::Circles(_)) {
             "this board looks the same turned: its first dot is the one nearest to the upper left of each picture; an asymmetric grid with an odd \
              number of rows has no such doubt"
         } else {

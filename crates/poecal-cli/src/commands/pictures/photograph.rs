@@ -1,15 +1,15 @@
 //! `poecal simulate --camera`: pictures of a board as a robot with errors would take them.
 
 use poecal_arm::lie::{Pose, rotation};
-use poecal_detect::render::{Camera, Random, Scene, clutter};
-use poecal_detect::{Layout, Spec, png};
-use poecal_fit::hand_eye::CameraPlace;
+use poecal_detect::render::{RandomGenerator, RenderCamera, RenderScene, clutter};
+use poecal_detect::{BoardLayout, BoardSpec, png};
+use poecal_fit::hand_eye::CameraMounting;
 use poecal_import::read_boards;
 use poecal_model::camera::{Board, CommonError, Distortion, Lens};
 use poecal_model::simulate::{PictureSimulation, Simulation};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_results::model::Model;
-use poecal_results::output::{FolderPlace, PhotographedSession, write_photographs};
+use poecal_results::output::{PhotographedSession, ReservedFolder, write_photographs};
 use rayon::prelude::*;
 
 use crate::args::Simulate;
@@ -28,8 +28,8 @@ const BLUR_PX: f64 = 0.8;
 const NOISE: f64 = 2.0;
 
 pub(crate) fn photograph(
-    (arguments, camera): (&Simulate, CameraPlace),
-    (model, place, command): (&Model, FolderPlace, &str),
+    (arguments, camera): (&Simulate, CameraMounting),
+    (model, place, command): (&Model, ReservedFolder, &str),
     console: &Console,
 ) -> Result<u8> {
     if arguments.count > MOST {
@@ -38,14 +38,14 @@ pub(crate) fn photograph(
             arguments.count
         ));
     }
-    if let Spec::Tags(_) = arguments.board {
+    if let BoardSpec::Tags(_) = arguments.board {
         return ErrorKind::Option.refuse(format!(
             "found --board {}, whose tags may be anywhere, expected a board of known places, as charuco, chessboard, circles or aprilgrid",
             arguments.board
         ));
     }
     let board = arguments.board.to_string();
-    let layout = Layout::new(&arguments.board);
+    let layout = BoardLayout::new(&arguments.board);
     let scene_from_board = scene_from_board(&layout);
     let mut body = read_boards(&board)?.into_iter().next().unwrap_or_default();
     body.points.iter_mut().for_each(|point| *point = scene_from_board.act(point));
@@ -74,11 +74,11 @@ pub(crate) fn photograph(
     let files: Vec<String> = written.files.iter().filter(|it| !it.starts_with("picture-")).cloned().collect();
     let count = written.files.len() - files.len();
     let files = [files, vec![format!("{count} pictures")]].concat();
-    Ok(console.say_of(&style::written(&written.folder, &files), &written.folder))
+    Ok(console.say_of(&style::describe_written_files(&written.folder, &files), &written.folder))
 }
 
 /// The simulated session of a camera and a board.
-fn simulation(arguments: &Simulate, camera: CameraPlace, body: Board) -> PictureSimulation {
+fn simulation(arguments: &Simulate, camera: CameraMounting, body: Board) -> PictureSimulation {
     let session = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
         error_position_m: arguments.errors.length_m,
@@ -90,17 +90,17 @@ fn simulation(arguments: &Simulate, camera: CameraPlace, body: Board) -> Picture
     let pinhole = Lens::pinhole([FOCAL_PX; 2], middle_px);
     let distortion = Distortion::Brown([K1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let lens = Lens { size_px: Some(SIZE_PX), distortion, ..pinhole };
-    let usual = PictureSimulation::usual(session, camera == CameraPlace::InHand);
+    let usual = PictureSimulation::with_usual_camera(session, camera == CameraMounting::InHand);
     let noise = CommonError {
         shift_m: arguments.noise.length_m,
         turn_rad: arguments.noise.angle_rad,
         ..CommonError::default()
     };
-    PictureSimulation { common: noise, ..usual.before(body, lens) }
+    PictureSimulation { common: noise, ..usual.with_board_and_lens(body, lens) }
 }
 
 /// Pose of the axes in which a board has its points, in the axes of its drawing, whose y is downwards from the first corner: Kalibr's are upwards.
-fn scene_from_board(layout: &Layout) -> Pose {
+fn scene_from_board(layout: &BoardLayout) -> Pose {
     let drawn = |id: usize| {
         let at = layout.corner(id);
         [at.x - 1.0, at.y - 1.0].map(|it| it * layout.square_m)
@@ -115,17 +115,18 @@ fn scene_from_board(layout: &Layout) -> Pose {
 }
 
 /// A picture of the board in a pose in the camera's frame.
-fn picture((layout, lens): (&Layout, &Lens), pose: &Pose, seed: u64) -> poecal_detect::Result<Vec<u8>> {
-    let mut random = Random::new(seed);
+fn picture((layout, lens): (&BoardLayout, &Lens), pose: &Pose, seed: u64) -> poecal_detect::Result<Vec<u8>> {
+    let mut random = RandomGenerator::new(seed);
     let size = SIZE_PX.map(|size| size as usize);
-    let camera = Camera { size, focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [K1, 0.0] };
+    let camera =
+        RenderCamera { size, focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [K1, 0.0] };
     let background = clutter(size, &mut random);
-    let scene = Scene {
+    let scene = RenderScene {
         camera,
         rotation: pose.rotation,
         translation_m: pose.translation,
         levels: LEVELS,
-        gradient: [random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)],
+        gradient: [random.draw_uniform(-0.1, 0.1), random.draw_uniform(-0.1, 0.1)],
         blur_px: BLUR_PX,
         noise: NOISE,
         patch: None,

@@ -19,7 +19,7 @@ const STOPPED: &str = "the machine has stopped";
 pub(crate) struct Chance(pub(crate) u64);
 
 impl Chance {
-    pub(crate) fn below(&mut self, bound: usize) -> usize {
+    pub(crate) fn draw_below(&mut self, bound: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -28,7 +28,7 @@ impl Chance {
     }
 
     pub(crate) fn one_in(&mut self, count: usize) -> bool {
-        self.below(count) == 0
+        self.draw_below(count) == 0
     }
 }
 
@@ -91,7 +91,7 @@ pub(crate) fn error(kind: ErrorKind) -> io::Error {
     kind.into()
 }
 
-pub(crate) fn whole(path: &Path) -> PathBuf {
+pub(crate) fn whole_path(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in Path::new(HERE).join(path).components() {
         match part {
@@ -115,7 +115,7 @@ impl State {
             self.failures += 1;
             let kinds = [ErrorKind::Other, ErrorKind::StorageFull, ErrorKind::PermissionDenied];
             let chance = self.faults.chance.get_or_insert(Chance(1));
-            return Err(io::Error::new(kinds[chance.below(3)], "a simulated failure"));
+            return Err(io::Error::new(kinds[chance.draw_below(3)], "a simulated failure"));
         }
         Ok(())
     }
@@ -150,7 +150,7 @@ impl State {
         Ok(())
     }
 
-    pub(crate) fn moved(&mut self, from: &Path, to: &Path) {
+    pub(crate) fn move_below(&mut self, from: &Path, to: &Path) {
         let under: Vec<PathBuf> = self.tree.keys().filter(|path| path.starts_with(from)).cloned().collect();
         let (from, to) = (from.to_owned(), to.to_owned());
         self.change(&[&from.clone(), &to.clone()], |tree| {
@@ -202,7 +202,7 @@ impl SimulatedDisk {
     /// Puts a file there, synced.
     pub(crate) fn put(&self, path: &str, bytes: &[u8]) {
         let mut state = self.state();
-        let path = whole(Path::new(path));
+        let path = whole_path(Path::new(path));
         for folder in path.ancestors().skip(1) {
             state.tree.entry(folder.to_owned()).or_insert(Node::Folder);
         }
@@ -239,17 +239,17 @@ impl SimulatedDisk {
         state.stopped = false;
         state.faults = Faults::default();
         if power_was_lost {
-            let kept = chance.below(state.unsynced.len() + 1);
+            let kept = chance.draw_below(state.unsynced.len() + 1);
             if let Some((tree, _)) = state.unsynced.get(kept) {
                 state.tree = tree.clone();
             }
             for file in &mut state.files {
                 let now = std::mem::take(&mut file.bytes);
                 let synced = file.synced.clone().unwrap_or_default();
-                file.bytes = match (file.synced.as_ref() == Some(&now), chance.below(4)) {
+                file.bytes = match (file.synced.as_ref() == Some(&now), chance.draw_below(4)) {
                     (true, _) | (_, 0) => now,
                     (_, 1) => synced,
-                    (_, 2) => now[..chance.below(now.len() + 1)].to_vec(),
+                    (_, 2) => now[..chance.draw_below(now.len() + 1)].to_vec(),
                     _ => vec![0; now.len()],
                 };
                 file.synced = Some(file.bytes.clone());
@@ -261,7 +261,7 @@ impl SimulatedDisk {
     /// Every file below a folder with its bytes, and every folder.
     pub(crate) fn listing(&self, folder: &str) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
         let state = self.state();
-        let below = state.tree.iter().filter(|(path, _)| path.starts_with(whole(Path::new(folder))));
+        let below = state.tree.iter().filter(|(path, _)| path.starts_with(whole_path(Path::new(folder))));
         let content = |node: &Node| match node {
             Node::Folder => None,
             Node::File(number) => Some(state.files[*number].bytes.clone()),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use poecal_results::fleet::{Ledger, LedgerRow, read_ledgers};
-use poecal_storage::disk::on;
+use poecal_storage::disk::run_on_disk;
 
 use super::disk::{Chance, Faults, SimulatedDisk};
 
@@ -20,7 +20,7 @@ fn row(robot: usize) -> LedgerRow {
 
 /// Appends the rows that the ledger does not have; returns their number, and the error that ended it.
 fn work_off(disk: &SimulatedDisk) -> (usize, Option<String>) {
-    on(Arc::new(disk.clone()), || {
+    run_on_disk(Arc::new(disk.clone()), || {
         let mut ledger = match Ledger::open(Path::new("fleet.jsonl")) {
             Ok(ledger) => ledger,
             Err(error) => return (0, Some(error.to_string())),
@@ -41,7 +41,7 @@ fn work_off(disk: &SimulatedDisk) -> (usize, Option<String>) {
 
 fn serials(disk: &SimulatedDisk) -> Vec<String> {
     let read = || read_ledgers(&[PathBuf::from("fleet.jsonl")]).unwrap();
-    on(Arc::new(disk.clone()), read).into_iter().map(|row| row.serial).collect()
+    run_on_disk(Arc::new(disk.clone()), read).into_iter().map(|row| row.serial).collect()
 }
 
 /// With room for any number of bytes, and stopped before any operation: an appended row is there, half a row is none, and the next run adds those

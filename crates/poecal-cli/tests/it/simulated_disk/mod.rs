@@ -14,8 +14,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use disk::{Chance, Faults, SimulatedDisk};
-use poecal_cli::{Said, run_captured};
-use poecal_storage::disk::on;
+use poecal_cli::{CapturedOutput, run_captured};
+use poecal_storage::disk::run_on_disk;
 use poecal_testing::trials::trials;
 
 /// An arm of two joints: thousands of calibrations run, and a test of the disk needs no larger one.
@@ -54,9 +54,9 @@ impl Case {
     }
 }
 
-fn run(disk: &SimulatedDisk, command: &str) -> Said {
+fn run(disk: &SimulatedDisk, command: &str) -> CapturedOutput {
     let words = std::iter::once("poecal").chain(command.split_whitespace()).map(OsString::from);
-    on(Arc::new(disk.clone()), || run_captured(words))
+    run_on_disk(Arc::new(disk.clone()), || run_captured(words))
 }
 
 /// A place without the files that a run has not put in place.
@@ -151,16 +151,16 @@ fn faults(case: &Case, chance: &mut Chance) -> Faults {
     };
     // Other paths, and short writes, take more operations than the default one.
     let operations = case.operations + 20;
-    match chance.below(4) {
-        0 => faults.stop_before = Some(chance.below(operations)),
-        1 => faults.fail = (0..=chance.below(3)).map(|_| chance.below(operations)).collect(),
+    match chance.draw_below(4) {
+        0 => faults.stop_before = Some(chance.draw_below(operations)),
+        1 => faults.fail = (0..=chance.draw_below(3)).map(|_| chance.draw_below(operations)).collect(),
         2 => {
-            let first = chance.below(operations);
-            faults.fail = (first..=first + chance.below(4)).collect();
-            faults.stop_before = Some(first + chance.below(operations));
+            let first = chance.draw_below(operations);
+            faults.fail = (first..=first + chance.draw_below(4)).collect();
+            faults.stop_before = Some(first + chance.draw_below(operations));
         }
         // Sometimes more than is needed.
-        _ => faults.room = Some(chance.below(case.bytes() * 6 / 5)),
+        _ => faults.room = Some(chance.draw_below(case.bytes() * 6 / 5)),
     }
     faults.chance = Some(chance.clone());
     faults
@@ -253,7 +253,7 @@ fn whatever_fails_a_place_is_old_or_new_or_completed_by_the_next_run() {
     let trials = trials(WEEKLY).count;
     let ends = on_two_threads(trials, |seed| {
         let mut chance = Chance(seed as u64);
-        let case = &cases[chance.below(cases.len())];
+        let case = &cases[chance.draw_below(cases.len())];
         let faults = faults(case, &mut chance);
         trial(case, &faults, &mut chance)
     });
@@ -316,7 +316,7 @@ fn each_input_is_opened_once() {
         assert_eq!(said.code, 0, "{command}: {}", said.err);
         let opened = &disk.state().opened;
         for (name, _) in &inputs {
-            let count = opened.get(&disk::whole(name.as_ref())).copied().unwrap_or_default();
+            let count = opened.get(&disk::whole_path(name.as_ref())).copied().unwrap_or_default();
             assert_eq!(count, usize::from(command.contains(name)), "{command}: {name}");
         }
     }

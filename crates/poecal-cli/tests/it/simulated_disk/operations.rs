@@ -4,9 +4,9 @@ use std::ffi::OsString;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use poecal_storage::disk::{Disk, Lock, Object, ObjectKind, Output};
+use poecal_storage::disk::{Disk, DiskObject, Lock, ObjectKind, Output};
 
-use super::disk::{Chance, Content, Node, SimulatedDisk, error, whole};
+use super::disk::{Chance, Content, Node, SimulatedDisk, error, whole_path};
 
 /// A file that is read or written.
 struct Handle {
@@ -35,7 +35,7 @@ impl Write for Handle {
         if state.faults.short_writes && count > 1 {
             let chance = state.faults.chance.get_or_insert(Chance(1));
             // Not so short that a page would take long.
-            count = (1 + chance.below(count)).max(count / 4);
+            count = (1 + chance.draw_below(count)).max(count / 4);
         }
         if let Some(room) = state.faults.room {
             count = count.min(room.saturating_sub(state.written));
@@ -77,39 +77,39 @@ impl Drop for Held {
 }
 
 impl Disk for SimulatedDisk {
-    fn look(&self, path: &Path) -> io::Result<Object> {
+    fn look(&self, path: &Path) -> io::Result<DiskObject> {
         let mut state = self.state();
         state.begin()?;
-        match state.tree.get(&whole(path)) {
-            Some(Node::Folder) => Ok(Object { kind: ObjectKind::Folder, identity: None, is_mine: true }),
+        match state.tree.get(&whole_path(path)) {
+            Some(Node::Folder) => Ok(DiskObject { kind: ObjectKind::Folder, identity: None, is_mine: true }),
             Some(Node::File(number)) => {
-                Ok(Object { kind: ObjectKind::File, identity: Some((1, *number as u64)), is_mine: true })
+                Ok(DiskObject { kind: ObjectKind::File, identity: Some((1, *number as u64)), is_mine: true })
             }
             None => Err(error(ErrorKind::NotFound)),
         }
     }
 
-    fn follow(&self, path: &Path) -> io::Result<Object> {
+    fn follow(&self, path: &Path) -> io::Result<DiskObject> {
         self.look(path)
     }
 
-    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
-        self.look(path).map(|_| whole(path))
+    fn canonical_path(&self, path: &Path) -> io::Result<PathBuf> {
+        self.look(path).map(|_| whole_path(path))
     }
 
     fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
         let mut state = self.state();
         state.begin()?;
-        state.folder(&whole(folder))?;
-        let children = state.children(&whole(folder));
+        state.folder(&whole_path(folder))?;
+        let children = state.children(&whole_path(folder));
         Ok(children.iter().map(|path| path.file_name().unwrap().to_owned()).collect())
     }
 
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
         let mut state = self.state();
         state.begin()?;
-        *state.opened.entry(whole(path)).or_default() += 1;
-        match state.tree.get(&whole(path)) {
+        *state.opened.entry(whole_path(path)).or_default() += 1;
+        match state.tree.get(&whole_path(path)) {
             Some(Node::File(number)) => Ok(Box::new(Handle { disk: self.clone(), number: *number, at: 0 })),
             Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
             None => Err(error(ErrorKind::NotFound)),
@@ -123,7 +123,7 @@ impl Disk for SimulatedDisk {
     fn create(&self, path: &Path) -> io::Result<Box<dyn Output>> {
         let mut state = self.state();
         state.begin()?;
-        let path = whole(path);
+        let path = whole_path(path);
         state.folder(path.parent().unwrap())?;
         if state.tree.contains_key(&path) {
             return Err(error(ErrorKind::AlreadyExists));
@@ -140,7 +140,7 @@ impl Disk for SimulatedDisk {
         let there = {
             let mut state = self.state();
             state.begin()?;
-            state.tree.get(&whole(path)).copied()
+            state.tree.get(&whole_path(path)).copied()
         };
         match there {
             Some(Node::File(number)) => Ok(Box::new(Handle { disk: self.clone(), number, at: 0 })),
@@ -156,7 +156,7 @@ impl Disk for SimulatedDisk {
     fn create_folder(&self, path: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let path = whole(path);
+        let path = whole_path(path);
         state.folder(path.parent().unwrap())?;
         if state.tree.contains_key(&path) {
             return Err(error(ErrorKind::AlreadyExists));
@@ -170,7 +170,7 @@ impl Disk for SimulatedDisk {
     fn remove_file(&self, path: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let path = whole(path);
+        let path = whole_path(path);
         match state.tree.get(&path) {
             Some(Node::File(_)) => {
                 state.change(&[&path.clone()], |tree| {
@@ -186,7 +186,7 @@ impl Disk for SimulatedDisk {
     fn remove_folder(&self, path: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let path = whole(path);
+        let path = whole_path(path);
         state.folder(&path)?;
         if !state.children(&path).is_empty() {
             return Err(error(ErrorKind::DirectoryNotEmpty));
@@ -200,14 +200,14 @@ impl Disk for SimulatedDisk {
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let (from, to) = (whole(from), whole(to));
+        let (from, to) = (whole_path(from), whole_path(to));
         state.same_disk(&from, &to)?;
         state.folder(to.parent().unwrap())?;
         match (state.tree.get(&from), state.tree.get(&to)) {
             (None, _) => Err(error(ErrorKind::NotFound)),
             (Some(Node::File(one)), Some(Node::File(other))) if one == other => Ok(()),
             (Some(Node::File(_)), Some(Node::File(_)) | None) => {
-                state.moved(&from, &to);
+                state.move_below(&from, &to);
                 Ok(())
             }
             _ => Err(error(ErrorKind::IsADirectory)),
@@ -217,7 +217,7 @@ impl Disk for SimulatedDisk {
     fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let (from, to) = (whole(from), whole(to));
+        let (from, to) = (whole_path(from), whole_path(to));
         state.same_disk(&from, &to)?;
         state.folder(to.parent().unwrap())?;
         if !state.tree.contains_key(&from) {
@@ -226,14 +226,14 @@ impl Disk for SimulatedDisk {
         if state.tree.contains_key(&to) {
             return Err(error(ErrorKind::AlreadyExists));
         }
-        state.moved(&from, &to);
+        state.move_below(&from, &to);
         Ok(())
     }
 
     fn exchange(&self, one: &Path, other: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let (one, other) = (whole(one), whole(other));
+        let (one, other) = (whole_path(one), whole_path(other));
         if state.faults.no_exchange {
             return Err(error(ErrorKind::Unsupported));
         }
@@ -262,7 +262,7 @@ impl Disk for SimulatedDisk {
         if state.faults.no_links {
             return Err(error(ErrorKind::Unsupported));
         }
-        let (from, to) = (whole(from), whole(to));
+        let (from, to) = (whole_path(from), whole_path(to));
         state.same_disk(&from, &to)?;
         let Some(&node) = state.tree.get(&from) else { return Err(error(ErrorKind::NotFound)) };
         if state.tree.contains_key(&to) {
@@ -281,7 +281,7 @@ impl Disk for SimulatedDisk {
     fn sync_folder(&self, path: &Path) -> io::Result<()> {
         let mut state = self.state();
         state.begin()?;
-        let path = whole(path);
+        let path = whole_path(path);
         state.folder(&path)?;
         let last = state.unsynced.iter().rposition(|(_, touched)| touched.contains(&path));
         if let Some(last) = last {
@@ -294,7 +294,7 @@ impl Disk for SimulatedDisk {
         if self.look(path).is_err_and(|error| error.kind() == ErrorKind::NotFound) {
             self.create(path)?;
         }
-        let path = whole(path);
+        let path = whole_path(path);
         if !self.state().locks.insert(path.clone()) {
             return Ok(None);
         }

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
 use poecal_compensate::{Inverse, ProgramOptions, compensate_program};
-use poecal_model::robot::{Joint, JointTerm, Limits, Robot, Term, TermKind};
+use poecal_model::robot::{Joint, JointLimits, JointTerm, Robot, Term, TermKind};
 
 /// Numbers of a target that the test has read: their bytes and values.
 pub(super) type Numbers = Vec<(Range<usize>, f64)>;
@@ -53,14 +53,14 @@ pub(super) fn robot(
             Screw::revolute(&Vector3::from(*direction), &point),
         );
         joint.frame.translation = point;
-        joint.limits = Some(Limits { lower: f64::to_radians(lower), upper: f64::to_radians(upper) });
+        joint.limits = Some(JointLimits { lower: f64::to_radians(lower), upper: f64::to_radians(upper) });
         joint
     });
     Robot::new(name, joints.collect(), home).unwrap()
 }
 
 /// The actual robot: axes off by tenths of a millimetre and some 0.5 mrad, encoders by up to 3 mrad, gears by waves.
-pub(super) fn actual(nominal: &Robot) -> Robot {
+pub(super) fn make_actual(nominal: &Robot) -> Robot {
     let mut out = nominal.clone();
     for (index, joint) in out.joints.iter_mut().enumerate() {
         let sign = if index % 2 == 0 { 1.0 } else { -1.0 };
@@ -70,11 +70,11 @@ pub(super) fn actual(nominal: &Robot) -> Robot {
         let moved = Pose::from_translation(point + shift)
             * Pose::new(rotation::exp(&turn), Vector3::zeros())
             * Pose::from_translation(-point);
-        joint.screw = joint.screw.transformed(&moved);
+        joint.screw = joint.screw.transform(&moved);
         let offset = [0.002, -0.0015, 0.003, -0.001, 0.0025, -0.002][index];
         out.terms.push(JointTerm { joint: index, term: Term::OFFSET, coefficient: offset });
         let kind = if index % 2 == 0 { TermKind::Cosine } else { TermKind::Sine };
-        out.terms.push(JointTerm { joint: index, term: kind.numbered(1), coefficient: 2e-4 * sign });
+        out.terms.push(JointTerm { joint: index, term: kind.with_number(1), coefficient: 2e-4 * sign });
     }
     out.home = out.home
         * Pose::new(rotation::exp(&Vector3::new(1e-3, -5e-4, 2e-4)), Vector3::new(1e-4, 2e-4, -3e-4));
@@ -147,7 +147,7 @@ fn all_numbers(text: &[u8]) -> Vec<Range<usize>> {
 }
 
 /// A text cut at its numbers.
-fn between(text: &[u8], cuts: &[Range<usize>]) -> Vec<Vec<u8>> {
+fn split_at_numbers(text: &[u8], cuts: &[Range<usize>]) -> Vec<Vec<u8>> {
     let mut at = 0;
     let mut out = Vec::new();
     for cut in cuts {
@@ -177,7 +177,7 @@ pub(super) fn check(
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
     let text = std::fs::read(path).unwrap();
     let expected = rows(&std::fs::read_to_string(path.with_extension("expected")).unwrap());
-    let actual = actual(nominal);
+    let actual = make_actual(nominal);
     let (out, summary) = compensate_program(&text, (nominal, &actual), &[], options).unwrap();
     let found: Vec<String> = summary
         .changes
@@ -220,14 +220,14 @@ pub(super) fn check(
                 let tip = |numbers: &[f64]| *frame * (reader.pose)(numbers) * tool.inverse();
                 let meant = tip(&before);
                 // One decimal of a millimetre, six of a quaternion or three of a degree, at two metres.
-                let apart = apart(&nominal.forward_kinematics(&q), &meant);
+                let apart = pose_difference(&nominal.forward_kinematics(&q), &meant);
                 assert!(
                     apart.0 < 1e-4 && apart.1 < 4e-5,
                     "{name} {target}: not what the file says: {apart:?}"
                 );
                 let told = tip(&after);
                 let commanded =
-                    inverse.nearest(&told, &q, false).unwrap_or_else(|| panic!("{name} {target}"));
+                    inverse.solve_nearest(&told, &q, false).unwrap_or_else(|| panic!("{name} {target}"));
                 let degrees: Vec<f64> = commanded.iter().map(|it| it.to_degrees()).collect();
                 // Targets whose words are not followed are unchanged.
                 let stated: Vec<f64> = q.iter().map(|it| it.to_degrees()).collect();
@@ -248,15 +248,15 @@ pub(super) fn check(
             }
             Row::Listed { .. } => continue,
         };
-        let left = apart(&actual.forward_kinematics(&q), &meant);
-        let off = apart(&nominal.forward_kinematics(&q), &meant);
+        let left = pose_difference(&actual.forward_kinematics(&q), &meant);
+        let off = pose_difference(&nominal.forward_kinematics(&q), &meant);
         assert!(off.0 > 1e-4 || off.1 > 1e-4, "{name} {target}: not corrected at all");
         metres = metres.max(left.0);
         radians = radians.max(left.1);
     }
     // Beside the numbers of corrected targets, nothing differs.
     let (old, new) = (all_numbers(&text), all_numbers(&out));
-    assert_eq!(between(&text, &old), between(&out, &new), "{name}: other bytes");
+    assert_eq!(split_at_numbers(&text, &old), split_at_numbers(&out, &new), "{name}: other bytes");
     for (old, new) in old.iter().zip(&new) {
         if !changed.iter().any(|it| it.start <= old.start && old.end <= it.end) {
             assert_eq!(
@@ -271,7 +271,7 @@ pub(super) fn check(
 }
 
 /// Distance and angle of two poses.
-fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
+fn pose_difference(one: &Pose, other: &Pose) -> (f64, f64) {
     let turn = rotation::log(&(one.rotation.transpose() * other.rotation));
     ((one.translation - other.translation).norm(), turn.norm())
 }

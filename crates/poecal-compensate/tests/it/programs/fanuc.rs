@@ -2,13 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_compensate::{Given, Language, ProgramOptions};
+use poecal_compensate::{Language, ProgramOptions, StatedFrames};
 use poecal_model::robot::Robot;
 
 use super::expected::{Numbers, Reader, check, files, robot};
 
 /// An arm of FANUC's kind: its base is at the height of the second axis, its third and fifth joints turn up.
-fn nominal() -> Robot {
+fn fanuc_robot() -> Robot {
     let axes = [
         ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
         ([0.0, 1.0, 0.0], [50.0, 0.0, 0.0]),
@@ -75,8 +75,8 @@ const READER: Reader = Reader {
 
 #[test]
 fn programs_of_fanuc_are_corrected_in_place() {
-    let nominal = nominal();
-    let mut given = Given::default();
+    let nominal = fanuc_robot();
+    let mut given = StatedFrames::default();
     for tool in ["1=12.5,-3,145.25,0,0,0", "2=80,0,110,0,-45,0", "3=-40.5,12,60,10,20,30"] {
         given.add_tool(tool, Language::Fanuc).unwrap();
     }

@@ -5,10 +5,10 @@ use poecal_arm::lie::Pose;
 use poecal_compensate::{Language, ProgramOptions, compensate_program};
 use poecal_model::robot::Robot;
 
-use super::slots::{Case, Form, actual, check, options, robot};
+use super::slots::{Case, Form, check, make_actual, options, robot};
 
 /// An arm with the axes and signs of KUKA's: lying along x at zero, axis 4 above axis 3.
-fn nominal() -> Robot {
+fn kuka_robot() -> Robot {
     let (down, y, back) = ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
     let axes = [
         (down, [0.0, 0.0, 0.0]),
@@ -30,7 +30,7 @@ fn abc_pose(it: &[f64]) -> Pose {
     Pose::new(*turn.matrix(), Vector3::new(it[0], it[1], it[2]) * 1e-3)
 }
 
-fn named(name: &str) -> Pose {
+fn find_named(name: &str) -> Pose {
     match name {
         "t" => abc_pose(&[10.0, -20.0, 150.0, 10.0, 20.0, 30.0]),
         "u" => abc_pose(&[0.0, 0.0, 200.0, 0.0, 0.0, 0.0]),
@@ -73,7 +73,7 @@ const FORM: Form = Form {
             assert_eq!((*s as u32, *t as u32), status(q));
         }
     },
-    named,
+    named: find_named,
 };
 
 macro_rules! program {
@@ -377,8 +377,8 @@ const CASES: [Case; 20] = [
 
 #[test]
 fn targets_of_twenty_programs_are_reached_and_all_else_stays() {
-    let nominal = nominal();
-    let actual = actual(&nominal);
+    let nominal = kuka_robot();
+    let actual = make_actual(&nominal);
     let mut count = 0;
     for case in &CASES {
         let (metres, radians, corrected) =
@@ -392,7 +392,7 @@ fn targets_of_twenty_programs_are_reached_and_all_else_stays() {
 /// The example of KUKA's programming manual: the arm with its upper arm upright and its forearm level has S 'B 010', T 'B 000010'.
 #[test]
 fn the_status_of_the_home_position_is_that_of_the_manual() {
-    let nominal = nominal();
+    let nominal = kuka_robot();
     // A wrist that is bent a little, since at zero it is singular: both have A5 above zero.
     let q = [0.1_f64, -90.0, 90.0, 0.1, 10.0, 0.1].map(f64::to_radians);
     let pose = (FORM.pose)('P', &nominal.forward_kinematics(&q), &q);

@@ -7,10 +7,10 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_compensate::{Inverse, Language, ProgramOptions, compensate_program};
 use poecal_model::robot::Robot;
 
-use super::expected::{Numbers, Reader, actual, check, files, pose_of, robot};
+use super::expected::{Numbers, Reader, check, files, make_actual, pose_of, robot};
 
 /// An arm of ABB's kind.
-fn nominal() -> Robot {
+fn abb_robot() -> Robot {
     let axes = [
         ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
         ([0.0, 1.0, 0.0], [320.0, 0.0, 780.0]),
@@ -65,7 +65,7 @@ const READER: Reader = Reader {
 
 #[test]
 fn programs_in_rapid_are_corrected_in_place() {
-    let nominal = nominal();
+    let nominal = abb_robot();
     let options = ProgramOptions { check: true, ..ProgramOptions::new(Language::Rapid) };
     let paths = files("rapid", &["mod", "prg", "sys"]);
     let (mut metres, mut radians, mut targets) = (0.0_f64, 0.0_f64, 0);
@@ -85,12 +85,12 @@ fn programs_in_rapid_are_corrected_in_place() {
 /// A module of targets alone: the user states the tool and work object of its moves.
 #[test]
 fn targets_without_moves_have_what_the_user_states() {
-    let nominal = nominal();
+    let nominal = abb_robot();
     let text = "MODULE Data\n  CONST robtarget p10:=[[1628.128,-12.5,1705.665],[0.13052562,0,0.99144494,0],\
                 [-1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nENDMODULE\n";
     let mut options = ProgramOptions::new(Language::Rapid);
     let run = |options: &ProgramOptions| {
-        compensate_program(text.as_bytes(), (&nominal, &actual(&nominal)), &[], options).unwrap()
+        compensate_program(text.as_bytes(), (&nominal, &make_actual(&nominal)), &[], options).unwrap()
     };
     let (out, summary) = run(&options);
     assert_eq!((out.as_slice(), summary.corrected, summary.changes.listed.len()), (text.as_bytes(), 0, 1));
@@ -106,9 +106,9 @@ fn targets_without_moves_have_what_the_user_states() {
         frame * pose_of(&numbers) * Pose::from_translation(Vector3::new(0.0, 0.0, -0.1))
     };
     let inverse = Inverse::new(&nominal, &[]).unwrap();
-    let meant = inverse.nearest(&pose(text.as_bytes()), &[0.0; 6], true).unwrap();
-    let commanded = inverse.nearest(&pose(&out), &meant, true).unwrap();
+    let meant = inverse.solve_nearest(&pose(text.as_bytes()), &[0.0; 6], true).unwrap();
+    let commanded = inverse.solve_nearest(&pose(&out), &meant, true).unwrap();
     let left =
-        actual(&nominal).forward_kinematics(&commanded).translation - pose(text.as_bytes()).translation;
+        make_actual(&nominal).forward_kinematics(&commanded).translation - pose(text.as_bytes()).translation;
     assert!(left.norm() < 1e-8, "{left}");
 }

@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist, rotation};
 use poecal_compensate::{Inverse, Language, ProgramOptions, compensate_program};
-use poecal_model::robot::{Joint, JointTerm, Limits, Robot, Term, TermKind};
+use poecal_model::robot::{Joint, JointLimits, JointTerm, Robot, Term, TermKind};
 
 /// A program, and its expected outcome.
 pub(super) struct Case {
@@ -58,7 +58,7 @@ pub(super) fn numbers(text: &str) -> Vec<f64> {
 }
 
 /// The literal pieces of a template and the slots between them.
-fn cut(template: &str, nominal: &Robot, form: &Form) -> (Vec<String>, Vec<Slot>) {
+fn cut_template(template: &str, nominal: &Robot, form: &Form) -> (Vec<String>, Vec<Slot>) {
     let (mut pieces, mut slots) = (vec![String::new()], Vec::new());
     let mut rest = template;
     while let Some(at) = rest.find('@') {
@@ -88,7 +88,7 @@ fn latin(text: &str) -> Vec<u8> {
 }
 
 /// Texts in the slots of a written program, between the same pieces.
-fn between(written: &[u8], pieces: &[String]) -> Vec<String> {
+fn texts_in_slots(written: &[u8], pieces: &[String]) -> Vec<String> {
     let first = latin(&pieces[0]);
     assert!(written.starts_with(&first), "the beginning has changed");
     let mut at = first.len();
@@ -114,7 +114,7 @@ fn between(written: &[u8], pieces: &[String]) -> Vec<String> {
     found
 }
 
-fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
+fn pose_difference(one: &Pose, other: &Pose) -> (f64, f64) {
     let turn = rotation::log(&(one.rotation.transpose() * other.rotation));
     ((one.translation - other.translation).norm(), turn.norm())
 }
@@ -133,7 +133,7 @@ pub(super) fn check(
     form: &Form,
 ) -> (f64, f64, usize) {
     let (nominal, actual) = robots;
-    let (pieces, slots) = cut(case.text, nominal, form);
+    let (pieces, slots) = cut_template(case.text, nominal, form);
     let mut text = latin(&pieces[0]);
     for (slot, piece) in slots.iter().zip(&pieces[1..]) {
         text.extend(latin(&slot.text));
@@ -150,7 +150,7 @@ pub(super) fn check(
     assert!(checked_m.value < ROUNDING && checked_rad.value < ROUNDING, "{}", case.name);
     let inverse = Inverse::new(nominal, &[]).unwrap();
     let mut worst = (0.0_f64, 0.0_f64);
-    for (slot, found) in slots.iter().zip(between(&written, &pieces)) {
+    for (slot, found) in slots.iter().zip(texts_in_slots(&written, &pieces)) {
         if slot.is_kept() {
             assert_eq!(found, slot.text, "{}", case.name);
             continue;
@@ -162,13 +162,13 @@ pub(super) fn check(
             let place = |it: &[f64]| slot.frame * (form.to_pose)(it) * slot.tool.inverse();
             let told = place(&commanded);
             // The controller computes with the nominal robot.
-            let q = inverse.nearest(&told, &slot.q, true).unwrap();
+            let q = inverse.solve_nearest(&told, &slot.q, true).unwrap();
             (form.words)(&commanded, &q);
             (place(&meant), q)
         };
-        let uncorrected = apart(&actual.forward_kinematics(&slot.q), &target);
+        let uncorrected = pose_difference(&actual.forward_kinematics(&slot.q), &target);
         assert!(uncorrected.0.max(uncorrected.1) > LEAST_MOVED, "{}: nothing to correct", case.name);
-        let left = apart(&actual.forward_kinematics(&q), &target);
+        let left = pose_difference(&actual.forward_kinematics(&q), &target);
         worst = (worst.0.max(left.0), worst.1.max(left.1));
         assert!(left.0 < ROUNDING && left.1 < ROUNDING, "{}: {}: {left:?}", case.name, slot.text);
     }
@@ -181,24 +181,24 @@ pub(super) fn robot(axes: [([f64; 3], [f64; 3]); 6], limits: [(f64, f64); 6], ho
         let ((direction, point), (lower, upper)) = (axes[at], limits[at]);
         let screw = Screw::revolute(&Vector3::from(direction), &Vector3::from(point));
         let mut joint = Joint::revolute(&format!("joint{}", at + 1), screw);
-        joint.limits = Some(Limits { lower: f64::to_radians(lower), upper: f64::to_radians(upper) });
+        joint.limits = Some(JointLimits { lower: f64::to_radians(lower), upper: f64::to_radians(upper) });
         joint
     };
     Robot::new("arm", (0..6).map(joint).collect(), home).unwrap()
 }
 
 /// The actual robot: axes some tenths of a millimetre and of a milliradian off, offsets, and an eccentric gear.
-pub(super) fn actual(nominal: &Robot) -> Robot {
+pub(super) fn make_actual(nominal: &Robot) -> Robot {
     let mut out = nominal.clone();
     for (at, joint) in out.joints.iter_mut().enumerate() {
         let k = at as f64;
         let v = Vector3::new((k + 1.0).sin(), (2.0 * k).cos(), (3.0 * k + 2.0).sin()) * 4e-4;
         let w = Vector3::new((5.0 * k).cos(), (k + 3.0).sin(), (4.0 * k).cos()) * 5e-4;
-        joint.screw = joint.screw.transformed(&Pose::exp(&Twist::new(v, w)));
+        joint.screw = joint.screw.transform(&Pose::exp(&Twist::new(v, w)));
         let coefficient = 2e-3 * (k + 0.5).sin();
         out.terms.push(JointTerm { joint: at, term: Term::OFFSET, coefficient });
     }
-    let wave = TermKind::Sine.numbered(1);
+    let wave = TermKind::Sine.with_number(1);
     out.terms.push(JointTerm { joint: 1, term: wave, coefficient: 8e-4 });
     out
 }

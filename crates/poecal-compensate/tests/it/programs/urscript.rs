@@ -5,10 +5,10 @@ use poecal_arm::lie::Pose;
 use poecal_compensate::{Language, ProgramOptions, compensate_program};
 use poecal_model::robot::Robot;
 
-use super::slots::{Case, Form, actual, check, options, robot};
+use super::slots::{Case, Form, check, make_actual, options, robot};
 
 /// The geometry of a UR5, with its joints at zero as its maker defines them: lying along -x.
-fn nominal() -> Robot {
+fn ur5_robot() -> Robot {
     let (z, y, d1, a2, a3, d4, d5, d6) =
         ([0.0, 0.0, 1.0], [0.0, -1.0, 0.0], 0.0892, 0.425, 0.392, 0.1092, 0.0947, 0.0823);
     let axes = [
@@ -28,36 +28,36 @@ fn vector_pose(it: &[f64]) -> Pose {
     Pose::new(*turn.matrix(), Vector3::new(it[0], it[1], it[2]))
 }
 
-fn named(name: &str) -> Pose {
+fn find_named(name: &str) -> Pose {
     match name {
         "t" => vector_pose(&[0.01, -0.02, 0.15, 0.1, 0.2, 0.3]),
         "u" => vector_pose(&[0.0, 0.0, 0.2, 0.0, 0.0, 0.0]),
         "f" => vector_pose(&[-0.4, 0.1, 0.05, 0.0, 0.0, 1.57]),
-        "ff" => named("f") * vector_pose(&[0.1, 0.0, 0.0, 0.3, 0.0, 0.0]),
+        "ff" => find_named("f") * vector_pose(&[0.1, 0.0, 0.0, 0.3, 0.0, 0.0]),
         "base" => vector_pose(&[0.0, 0.0, 0.0, 0.0, 0.0, std::f64::consts::PI]),
         "flange" => vector_pose(&[0.0, 0.0, -0.05, 0.0, 0.0, 0.5]),
         // Frame and tool of the case in which the model's base and tip differ from the controller's.
-        "tf" => named("flange") * named("t"),
-        "bf" => named("base"),
+        "tf" => find_named("flange") * find_named("t"),
+        "bf" => find_named("base"),
         _ => Pose::identity(),
     }
 }
 
-fn six(numbers: &[f64], decimals: usize) -> String {
+fn six_texts(numbers: &[f64], decimals: usize) -> String {
     let texts: Vec<String> = numbers.iter().map(|it| format!("{it:.decimals$}")).collect();
     texts.join(", ")
 }
 
 const FORM: Form = Form {
-    joints: |q| six(q, 4),
+    joints: |q| six_texts(q, 4),
     pose: |_, pose, _| {
         let turn = Rotation3::from_matrix_unchecked(pose.rotation).scaled_axis();
-        six(&[pose.translation.x, pose.translation.y, pose.translation.z, turn.x, turn.y, turn.z], 6)
+        six_texts(&[pose.translation.x, pose.translation.y, pose.translation.z, turn.x, turn.y, turn.z], 6)
     },
     to_joints: <[f64]>::to_vec,
     to_pose: vector_pose,
     words: |_, _| {},
-    named,
+    named: find_named,
 };
 
 const COMPUTED: &str = "it is computed while the program runs";
@@ -245,8 +245,8 @@ const CASES: [Case; 20] = [
 
 #[test]
 fn targets_of_twenty_programs_are_reached_and_all_else_stays() {
-    let nominal = nominal();
-    let actual = actual(&nominal);
+    let nominal = ur5_robot();
+    let actual = make_actual(&nominal);
     let mut count = 0;
     for case in &CASES {
         let (metres, radians, corrected) =
@@ -259,8 +259,8 @@ fn targets_of_twenty_programs_are_reached_and_all_else_stays() {
 
 #[test]
 fn degrees_signs_and_spaces_are_those_of_the_program() {
-    let nominal = nominal();
-    let actual = actual(&nominal);
+    let nominal = ur5_robot();
+    let actual = make_actual(&nominal);
     let text = "movej( [ d2r(10), - 1.25 , +1.4 ,d2r( -100 ), -d2r(80),.35 ] , a = 1.4 )\n";
     let options = ProgramOptions::new(Language::UrScript);
     let (written, summary) = compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
@@ -282,8 +282,8 @@ fn degrees_signs_and_spaces_are_those_of_the_program() {
 /// Configurations in which a path of 0.3 m is followed in a series of programs: the time is proportional to their length.
 #[test]
 fn a_long_program_takes_time_by_its_length() {
-    let nominal = nominal();
-    let actual = actual(&nominal);
+    let nominal = ur5_robot();
+    let actual = make_actual(&nominal);
     let options = ProgramOptions::new(Language::UrScript);
     let program = |count: usize| {
         let line =

@@ -1,6 +1,6 @@
 //! Comparison of pairs with other orders: evidently right, wrong, or no better.
 
-use super::{EVIDENT, FEWEST_PAIRS, Pair, Unpaired};
+use super::{EVIDENT, FEWEST_PAIRS, RowPair, UnpairedRows};
 
 /// Rows by which one file may begin later.
 const SHIFTS: usize = 3;
@@ -9,7 +9,7 @@ const BY_CHANCE: usize = 3;
 
 /// Another order of joint readings and measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum RowOrder {
     /// The measurements begin this many rows later than the joint readings.
     MeasuredLater(usize),
     /// The joint readings begin this many rows later than the measurements.
@@ -31,7 +31,7 @@ pub enum Agreement {
         /// Error of the pairs.
         missed_m: f64,
         /// The other order.
-        order: Order,
+        order: RowOrder,
         /// Error of the other order.
         other_m: f64,
     },
@@ -40,7 +40,7 @@ pub enum Agreement {
         /// Error of the pairs.
         missed_m: f64,
         /// The other order.
-        order: Order,
+        order: RowOrder,
         /// Error of the other order.
         other_m: f64,
     },
@@ -64,20 +64,20 @@ impl Agreement {
     }
 }
 
-impl Unpaired<'_> {
+impl UnpairedRows<'_> {
     /// Agreement of pairs with the nominal robot, compared with their other orders; `None` if no comparison is possible, as with few pairs.
     #[must_use]
-    pub fn agreement(&self, pairs: &[Pair]) -> Option<Agreement> {
+    pub fn agreement(&self, pairs: &[RowPair]) -> Option<Agreement> {
         if pairs.len() < FEWEST_PAIRS {
             return None;
         }
-        let missed_m = self.missed(pairs)?;
+        let missed_m = self.median_error(pairs)?;
         let others = orders(pairs.len()).into_iter().filter_map(|order| {
-            let other = reordered(pairs, order);
-            (other.len() >= FEWEST_PAIRS).then(|| Some((order, self.missed(&other)?)))?
+            let other = reorder_pairs(pairs, order);
+            (other.len() >= FEWEST_PAIRS).then(|| Some((order, self.median_error(&other)?)))?
         });
         let best = others.min_by(|a, b| a.1.total_cmp(&b.1));
-        let by_chance = (0..BY_CHANCE).filter_map(|k| self.missed(&shuffled(pairs, k)));
+        let by_chance = (0..BY_CHANCE).filter_map(|k| self.median_error(&shuffled(pairs, k)));
         let by_chance = by_chance.fold(f64::INFINITY, f64::min);
         let least = best.map_or(missed_m, |it| it.1.min(missed_m));
         if EVIDENT * least > by_chance {
@@ -99,20 +99,20 @@ impl Unpaired<'_> {
 const WRONG: f64 = 8.0;
 const RIGHT: f64 = 3.0;
 
-impl Unpaired<'_> {
+impl UnpairedRows<'_> {
     /// Pairs on which the nominal robot's error is far larger than on the others: indices into the pairs, with the error of each, metres,
     /// and the median of all.
     #[must_use]
-    pub fn wrong(&self, pairs: &[Pair]) -> (Vec<(usize, f64)>, f64) {
-        let Some((estimate, usual)) = self.registered(pairs) else { return (Vec::new(), f64::NAN) };
+    pub fn find_wrong_pairs(&self, pairs: &[RowPair]) -> (Vec<(usize, f64)>, f64) {
+        let Some((estimate, usual)) = self.register_pairs(pairs) else { return (Vec::new(), f64::NAN) };
         let errors = self.errors_of(pairs, &estimate);
         (errors.into_iter().enumerate().filter(|it| it.1 > WRONG * usual).collect(), usual)
     }
 
     /// Pairs whose measurements belong to each other's joint readings: indices into the pairs, each with the one whose readings it fits.
     #[must_use]
-    pub fn exchanged(&self, pairs: &[Pair]) -> Vec<(usize, usize)> {
-        let Some((estimate, usual)) = self.registered(pairs) else { return Vec::new() };
+    pub fn find_exchanged_pairs(&self, pairs: &[RowPair]) -> Vec<(usize, usize)> {
+        let Some((estimate, usual)) = self.register_pairs(pairs) else { return Vec::new() };
         let errors = self.errors_of(pairs, &estimate);
         let wrong: Vec<usize> =
             errors.iter().enumerate().filter(|it| *it.1 > WRONG * usual).map(|it| it.0).collect();
@@ -123,33 +123,34 @@ impl Unpaired<'_> {
         let crossed: Vec<(usize, usize)> = (wrong.iter())
             .flat_map(|one| wrong.iter().filter(move |other| *other != one).map(move |other| (*one, *other)))
             .collect();
-        let tried: Vec<Pair> = crossed.iter().map(|(one, other)| (pairs[*other].0, pairs[*one].1)).collect();
+        let tried: Vec<RowPair> =
+            crossed.iter().map(|(one, other)| (pairs[*other].0, pairs[*one].1)).collect();
         let found = self.errors_of(&tried, &estimate);
         crossed.into_iter().zip(found).filter(|it| it.1 < RIGHT * usual).map(|it| it.0).collect()
     }
 }
 
-fn orders(count: usize) -> Vec<Order> {
+fn orders(count: usize) -> Vec<RowOrder> {
     let shifts = 1..=SHIFTS.min(count.saturating_sub(1));
     shifts
-        .flat_map(|by| [Order::MeasuredLater(by), Order::JointsLater(by)])
-        .chain([Order::Reversed])
+        .flat_map(|by| [RowOrder::MeasuredLater(by), RowOrder::JointsLater(by)])
+        .chain([RowOrder::Reversed])
         .collect()
 }
 
 /// Pairs in another order.
-fn reordered(pairs: &[Pair], order: Order) -> Vec<Pair> {
+fn reorder_pairs(pairs: &[RowPair], order: RowOrder) -> Vec<RowPair> {
     let joints = || pairs.iter().map(|it| it.0);
     let shots = || pairs.iter().map(|it| it.1);
     match order {
-        Order::MeasuredLater(by) => joints().skip(by).zip(shots()).collect(),
-        Order::JointsLater(by) => joints().zip(shots().skip(by)).collect(),
-        Order::Reversed => joints().rev().zip(shots()).collect(),
+        RowOrder::MeasuredLater(by) => joints().skip(by).zip(shots()).collect(),
+        RowOrder::JointsLater(by) => joints().zip(shots().skip(by)).collect(),
+        RowOrder::Reversed => joints().rev().zip(shots()).collect(),
     }
 }
 
 /// Pairs in a random order, the same in every run.
-fn shuffled(pairs: &[Pair], seed: usize) -> Vec<Pair> {
+fn shuffled(pairs: &[RowPair], seed: usize) -> Vec<RowPair> {
     let mut joints: Vec<usize> = pairs.iter().map(|it| it.0).collect();
     // A step that has no divisor in common with the number of pairs takes every one once.
     let count = joints.len().max(1);

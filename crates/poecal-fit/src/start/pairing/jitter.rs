@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::parameters::{ClockUnknown, Columns as _};
-use crate::state::{Chain, ClockTerm, Estimate, Linkage, Session};
+use crate::parameters::{ClockUnknown, ParameterColumns as _};
+use crate::state::{ClockTerm, Estimate, Linkage, RowChain, Session};
 use poecal_model::measurement::Quantity;
 
 /// Fewest rows for an estimate.
@@ -11,7 +11,7 @@ const FEWEST: usize = 30;
 
 /// Standard deviation of single stamps, seconds, by the excess of errors along the motion over those across it; 0 without an excess.
 pub(crate) fn jitter(session: &Session<'_>, rows: &[u32], estimate: &Estimate) -> f64 {
-    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+    let (linkage, mut chain) = (Linkage::new(estimate), RowChain::default());
     let (mut along, mut across, mut squares, mut count) = (0.0, 0.0, 0.0, 0.0);
     for (error, &row) in session.errors(rows, estimate).iter().zip(rows) {
         let seen = session.observation(row);

@@ -69,7 +69,7 @@ impl JointStream {
 
     /// Writes readings at a time, and their rates, by the cubic through the rows around it with their mean slopes; `false` outside of the stream
     /// and in its gaps.
-    pub fn at(&self, time_s: f64, readings: &mut [f64], rates: &mut [f64]) -> bool {
+    pub fn interpolate(&self, time_s: f64, readings: &mut [f64], rates: &mut [f64]) -> bool {
         let after = self.times.partition_point(|it| *it <= time_s);
         if after < 2 || after + 1 >= self.times.len() {
             return false;
@@ -105,7 +105,7 @@ impl JointStream {
 /// Times of rows that come at equal steps, if their stamps are late irregularly: each by the stamps around it. `None` if stamps are regular, or the
 /// rows are not.
 #[must_use]
-pub fn smoothed(times: &[f64]) -> Option<Vec<f64>> {
+pub fn smooth_times(times: &[f64]) -> Option<Vec<f64>> {
     let count = times.len();
     if count < 4 * BESIDE || times.iter().any(|it| !it.is_finite()) {
         return None;
@@ -145,27 +145,30 @@ mod tests {
         let mut worst = (0.0_f64, 0.0_f64);
         for k in 0..150 {
             let t = 0.02 + 0.0123 * f64::from(k);
-            assert!(stream.at(t, &mut value, &mut rate));
+            assert!(stream.interpolate(t, &mut value, &mut rate));
             worst =
                 (worst.0.max((value[0] - of(t)).abs()), worst.1.max((rate[0] - 2.0 * (2.0 * t).cos()).abs()));
         }
         println!("value {:.1e}, rate {:.1e}", worst.0, worst.1);
         // Third order of the slopes: h³ q''' / 48 and h² q''' / 12.
         assert!(worst.0 < 3e-7 && worst.1 < 3e-4);
-        assert!(!stream.at(-0.1, &mut value, &mut rate) && !stream.at(2.5, &mut value, &mut rate));
+        assert!(
+            !stream.interpolate(-0.1, &mut value, &mut rate)
+                && !stream.interpolate(2.5, &mut value, &mut rate)
+        );
     }
 
     #[test]
     fn stamps_that_are_late_irregularly_are_smoothed() {
         let late = |k: u32| -0.01 * (1.0 - (f64::from(k) * 0.618_033_988_75).fract()).ln();
         let times: Vec<f64> = (0..2000).map(|k| 0.01 * f64::from(k) + late(k)).collect();
-        let found = smoothed(&times).unwrap();
+        let found = smooth_times(&times).unwrap();
         let off: Vec<f64> = found.iter().enumerate().map(|(k, it)| it - 0.01 * k as f64).collect();
         let mean = off.iter().sum::<f64>() / off.len() as f64;
         let spread = (off.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / off.len() as f64).sqrt();
         println!("mean {mean:.4} s, spread {spread:.4} s");
         assert!((mean - 0.01).abs() < 5e-4 && spread < 2e-3);
         let regular: Vec<f64> = (0..2000).map(|k| 0.01 * f64::from(k)).collect();
-        assert_eq!(smoothed(&regular), None);
+        assert_eq!(smooth_times(&regular), None);
     }
 }

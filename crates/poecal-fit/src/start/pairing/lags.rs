@@ -1,6 +1,6 @@
 //! Pairs of equal static intervals of two streams, each with a clock of its own.
 
-use super::{FEWEST_PAIRS, Pair, Unpaired};
+use super::{FEWEST_PAIRS, RowPair, UnpairedRows};
 use poecal_numerics::distributions::median;
 
 /// Largest difference between the begins of two static intervals that are the same, seconds.
@@ -13,24 +13,29 @@ const MOST: usize = 80;
 const SHARE: f64 = 0.4;
 
 /// Begin and end of a static interval, seconds; both are equal for a point.
-pub type Span = (f64, f64);
+pub type TimeInterval = (f64, f64);
 
 /// Pairs of static intervals at a lag.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lagged {
+pub struct LaggedPairs {
     /// Time of the measurements less that of the joint readings, seconds.
     pub lag_s: f64,
     /// Pairs.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<RowPair>,
     /// Median error of the nominal robot, metres.
     pub missed_m: f64,
 }
 
-impl Unpaired<'_> {
+impl UnpairedRows<'_> {
     /// Pairs at the lags at which most static intervals coincide, the one with the smallest error first. With a stated lag (and its largest error,
     /// seconds), only lags near it count.
     #[must_use]
-    pub fn lagged(&self, joints: &[Span], shots: &[Span], stated: Option<(f64, f64)>) -> Vec<Lagged> {
+    pub fn find_lags(
+        &self,
+        joints: &[TimeInterval],
+        shots: &[TimeInterval],
+        stated: Option<(f64, f64)>,
+    ) -> Vec<LaggedPairs> {
         let is_allowed = |lag: f64| stated.is_none_or(|(middle, off)| (lag - middle).abs() <= off + NEAR_S);
         let differences = joints.iter().flat_map(|joint| {
             shots.iter().map(move |shot| {
@@ -40,26 +45,26 @@ impl Unpaired<'_> {
         });
         let mut counted: Vec<(usize, f64)> = differences
             .filter(|lag| is_allowed(*lag))
-            .map(|lag| (paired(joints, shots, lag).len(), lag))
+            .map(|lag| (pair_intervals(joints, shots, lag).len(), lag))
             .filter(|it| it.0 >= FEWEST_PAIRS)
             .collect();
         counted.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
         let most = counted.first().map_or(0, |it| it.0);
-        let mut found: Vec<Lagged> = Vec::new();
+        let mut found: Vec<LaggedPairs> = Vec::new();
         for (count, lag) in counted {
             if found.len() >= MOST || (count as f64) < SHARE * most as f64 {
                 break;
             }
-            let refined = refined(joints, shots, lag);
+            let refined = refine_lag(joints, shots, lag);
             if found.iter().any(|it| (it.lag_s - refined).abs() < APART_S) || !is_allowed(refined) {
                 continue;
             }
-            let pairs = paired(joints, shots, refined);
+            let pairs = pair_intervals(joints, shots, refined);
             if pairs.len() < FEWEST_PAIRS {
                 continue;
             }
-            let Some(missed_m) = self.missed(&pairs) else { continue };
-            found.push(Lagged { lag_s: refined, pairs, missed_m });
+            let Some(missed_m) = self.median_error(&pairs) else { continue };
+            found.push(LaggedPairs { lag_s: refined, pairs, missed_m });
         }
         found.sort_by(|a, b| a.missed_m.total_cmp(&b.missed_m));
         found
@@ -67,11 +72,11 @@ impl Unpaired<'_> {
 }
 
 /// A lag, refined by the median difference between the begins of its pairs.
-fn refined(joints: &[Span], shots: &[Span], lag: f64) -> f64 {
-    let pairs = paired(joints, shots, lag);
-    let of = |&(joint, shot): &Pair| {
-        let (joint, shot): (&Span, &Span) = (joints.get(joint)?, shots.get(shot)?);
-        let middle = |it: &Span| 0.5 * (it.0 + it.1);
+fn refine_lag(joints: &[TimeInterval], shots: &[TimeInterval], lag: f64) -> f64 {
+    let pairs = pair_intervals(joints, shots, lag);
+    let of = |&(joint, shot): &RowPair| {
+        let (joint, shot): (&TimeInterval, &TimeInterval) = (joints.get(joint)?, shots.get(shot)?);
+        let middle = |it: &TimeInterval| 0.5 * (it.0 + it.1);
         Some(middle(shot) - middle(joint))
     };
     median(pairs.iter().filter_map(of)).unwrap_or(lag)
@@ -79,7 +84,7 @@ fn refined(joints: &[Span], shots: &[Span], lag: f64) -> f64 {
 
 /// Static intervals at the same time, each once: those that begin together, or that overlap if one was interrupted; points in their
 /// interval.
-fn paired(joints: &[Span], shots: &[Span], lag: f64) -> Vec<Pair> {
+fn pair_intervals(joints: &[TimeInterval], shots: &[TimeInterval], lag: f64) -> Vec<RowPair> {
     let mut pairs = Vec::new();
     let mut first = 0;
     for (at, shot) in shots.iter().enumerate() {
@@ -96,7 +101,7 @@ fn paired(joints: &[Span], shots: &[Span], lag: f64) -> Vec<Pair> {
         } else {
             overlap > 0.6 * shorter && ((from - joint.0).abs() < NEAR_S || (to - joint.1).abs() < NEAR_S)
         };
-        if is_same && (is_point || pairs.last().is_none_or(|it: &Pair| it.0 != first)) {
+        if is_same && (is_point || pairs.last().is_none_or(|it: &RowPair| it.0 != first)) {
             pairs.push((first, at));
         }
     }
@@ -109,13 +114,13 @@ mod tests {
 
     #[test]
     fn stands_at_the_same_time_are_paired() {
-        let joints: Vec<Span> = [(0.0, 1.0), (2.0, 2.6), (4.0, 5.0), (6.0, 6.5)].to_vec();
-        let shots: Vec<Span> = joints.iter().map(|it| (it.0 + 12.34, it.1 + 12.34)).collect();
-        assert_eq!(paired(&joints, &shots, 12.34), [(0, 0), (1, 1), (2, 2), (3, 3)]);
-        assert!((refined(&joints, &shots, 12.4) - 12.34).abs() < 1e-9);
+        let joints: Vec<TimeInterval> = [(0.0, 1.0), (2.0, 2.6), (4.0, 5.0), (6.0, 6.5)].to_vec();
+        let shots: Vec<TimeInterval> = joints.iter().map(|it| (it.0 + 12.34, it.1 + 12.34)).collect();
+        assert_eq!(pair_intervals(&joints, &shots, 12.34), [(0, 0), (1, 1), (2, 2), (3, 3)]);
+        assert!((refine_lag(&joints, &shots, 12.4) - 12.34).abs() < 1e-9);
         // One was lost, and one was interrupted.
-        assert_eq!(paired(&joints, &shots[1..], 12.34), [(1, 0), (2, 1), (3, 2)]);
-        let points: Vec<Span> = joints.iter().map(|it| (it.0 + 0.3, it.0 + 0.3)).collect();
-        assert_eq!(paired(&joints, &points, 0.0).len(), 4);
+        assert_eq!(pair_intervals(&joints, &shots[1..], 12.34), [(1, 0), (2, 1), (3, 2)]);
+        let points: Vec<TimeInterval> = joints.iter().map(|it| (it.0 + 0.3, it.0 + 0.3)).collect();
+        assert_eq!(pair_intervals(&joints, &points, 0.0).len(), 4);
     }
 }

@@ -4,33 +4,33 @@
 //! of recordings are detected (`stands.rs`), and those of two clocks are paired by their lag (`lags.rs`).
 
 mod agreement;
+mod interval_means;
 mod jitter;
 mod joint_stream;
 mod lags;
-mod mean_stands;
 mod motion;
-mod sampled;
+mod resampling;
 mod speeds;
-mod stand_means;
-mod stands;
-mod uneven;
+mod static_intervals;
+mod stream_intervals;
+mod uneven_lists;
 mod words;
 
-pub use agreement::{Agreement, Order};
-pub use joint_stream::{JointStream, smoothed};
-pub use lags::{Lagged, Span};
-pub use mean_stands::{MeasuredStands, stands_of_measured, stands_of_readings};
-pub use motion::{AtLag, InMotion, Motion, MovingRow, NoLag};
-pub use sampled::{MotionEntry, Sampled, motion_of_points, motion_of_target};
-pub use stands::{Channels, NoStream, Stand, Stream};
-pub use uneven::Aligned;
-pub use words::{mm, numbered, numbered_as};
+pub use agreement::{Agreement, RowOrder};
+pub use joint_stream::{JointStream, smooth_times};
+pub use lags::{LaggedPairs, TimeInterval};
+pub use motion::{LagFailure, LaggedMeasurements, MotionMeasurements, MotionRecording, MovingRow};
+pub use resampling::{MotionEntry, ResampledStream, motion_of_points, motion_of_target};
+pub use static_intervals::{RowStream, StaticInterval, StreamChannels, StreamFailure};
+pub use stream_intervals::{MeasuredStands, stands_of_measured, stands_of_readings};
+pub use uneven_lists::AlignedPairs;
+pub use words::{mm, number_lines, numbered_as};
 
 use std::collections::BTreeSet;
 
 use super::registration::Registration;
 use super::stations::register_roughly;
-use crate::state::{Estimate, Packed, RowError, Session, delivered};
+use crate::state::{Estimate, PackedValues, RowError, Session, nominal_estimate};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::median;
@@ -47,11 +47,11 @@ pub const EVIDENT: f64 = 2.0;
 pub const FEWEST_PAIRS: usize = 7;
 
 /// A row of joint readings, and a measured configuration; both from 0.
-pub type Pair = (usize, usize);
+pub type RowPair = (usize, usize);
 
 /// Joint readings and measurements, without an assignment of one to the other.
 #[derive(Clone, Debug)]
-pub struct Unpaired<'a> {
+pub struct UnpairedRows<'a> {
     robot: &'a Robot,
     /// Joint readings, one row after the other.
     joints: &'a [f64],
@@ -61,15 +61,15 @@ pub struct Unpaired<'a> {
     shots: Vec<Vec<u32>>,
 }
 
-impl<'a> Unpaired<'a> {
+impl<'a> UnpairedRows<'a> {
     /// Joint readings and measurements of a robot. Consecutive rows of a file belong to one configuration as long as none of their targets
     /// occurs again.
     #[must_use]
     pub fn new(robot: &'a Robot, joints: &'a [f64], data: &'a Dataset) -> Self {
-        Unpaired { robot, joints, data, shots: Self::shots_of(data) }
+        UnpairedRows { robot, joints, data, shots: Self::shots_of(data) }
     }
 
-    /// Rows of each configuration of measurements, as [`Unpaired::new`] finds them.
+    /// Rows of each configuration of measurements, as [`UnpairedRows::new`] finds them.
     #[must_use]
     pub fn shots_of(data: &Dataset) -> Vec<Vec<u32>> {
         let mut shots: Vec<Vec<u32>> = Vec::new();
@@ -118,12 +118,12 @@ impl<'a> Unpaired<'a> {
 
     /// Measurements of pairs, with their readings.
     #[must_use]
-    pub fn session_of(&self, pairs: &[Pair]) -> Dataset {
-        self.paired(pairs).0
+    pub fn session_of(&self, pairs: &[RowPair]) -> Dataset {
+        self.pair_rows(pairs).0
     }
 
     /// The same measurements with the pair of each row.
-    fn paired(&self, pairs: &[Pair]) -> (Dataset, Vec<usize>) {
+    fn pair_rows(&self, pairs: &[RowPair]) -> (Dataset, Vec<usize>) {
         let mut data =
             Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
         (data.targets, data.stations) = (self.data.targets.clone(), self.data.stations.clone());
@@ -141,19 +141,19 @@ impl<'a> Unpaired<'a> {
     }
 
     /// Registers pairs twice, the second time without those that fit badly, and returns the estimate with the median error, metres.
-    fn registered(&self, pairs: &[Pair]) -> Option<(Estimate, f64)> {
-        let (data, _) = self.paired(pairs);
+    fn register_pairs(&self, pairs: &[RowPair]) -> Option<(Estimate, f64)> {
+        let (data, _) = self.pair_rows(pairs);
         if data.is_empty() {
             return None;
         }
-        let packed = Packed::from_dataset(self.robot, &data);
+        let packed = PackedValues::from_dataset(self.robot, &data);
         let session = Session::new(self.robot, &data, &packed, true);
         let mut rows = data.all_rows();
         let mut best = None;
         for _ in 0..2 {
             let problem =
                 Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
-            let estimate = register_roughly(&problem, &delivered(self.robot, &data));
+            let estimate = register_roughly(&problem, &nominal_estimate(self.robot, &data));
             let missed: Vec<f64> = session.errors(&data.all_rows(), &estimate).iter().map(size).collect();
             let usual = median(missed.iter().copied()).filter(|it| it.is_finite())?;
             rows = data
@@ -169,16 +169,16 @@ impl<'a> Unpaired<'a> {
     }
 
     /// Median error of pairs, metres; of a subsample if there are many.
-    fn missed(&self, pairs: &[Pair]) -> Option<f64> {
+    fn median_error(&self, pairs: &[RowPair]) -> Option<f64> {
         let step = pairs.len().div_ceil(SOME).max(1);
-        let some: Vec<Pair> = pairs.iter().step_by(step).copied().collect();
-        self.registered(&some).map(|it| it.1)
+        let some: Vec<RowPair> = pairs.iter().step_by(step).copied().collect();
+        self.register_pairs(&some).map(|it| it.1)
     }
 
     /// Errors of pairs by an estimate, each the root mean square of its rows, metres.
-    fn errors_of(&self, pairs: &[Pair], estimate: &Estimate) -> Vec<f64> {
-        let (data, of) = self.paired(pairs);
-        let packed = Packed::from_dataset(self.robot, &data);
+    fn errors_of(&self, pairs: &[RowPair], estimate: &Estimate) -> Vec<f64> {
+        let (data, of) = self.pair_rows(pairs);
+        let packed = PackedValues::from_dataset(self.robot, &data);
         let session = Session::new(self.robot, &data, &packed, true);
         let mut sums = vec![(0.0, 0.0); pairs.len()];
         for (error, at) in session.errors(&data.all_rows(), estimate).iter().zip(of) {
@@ -194,5 +194,5 @@ impl<'a> Unpaired<'a> {
 
 /// Size of a row's error: of its position or distance, metres; for others, of the first measured quantity.
 fn size(error: &RowError) -> f64 {
-    error.leading().and_then(|quantity| error.length(quantity)).unwrap_or_default()
+    error.leading_quantity().and_then(|quantity| error.length(quantity)).unwrap_or_default()
 }

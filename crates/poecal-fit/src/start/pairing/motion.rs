@@ -4,15 +4,17 @@ use nalgebra::Vector3;
 
 use super::jitter::jitter;
 use super::joint_stream::JointStream;
-use super::speeds::{self, Track};
+use super::speeds::{self, MotionTrack};
 use super::{EVIDENT, NOISE, size};
 use crate::parameters::{ClockUnknown, Parameter, screw_axes};
 use crate::problem::{Prior, Problem};
 use crate::start::registration::{Registration, register_again};
 use crate::start::stations::register_roughly;
 use crate::start::target_parameters;
-use crate::state::{ClockTerm, Estimate, Packed, RowError, Session, Unknowns, delivered, sample_rows};
-use poecal_model::measurement::{Clock, Dataset, Moving, Observation, Quantity};
+use crate::state::{
+    ClockTerm, Estimate, PackedValues, RowError, Session, Unknowns, nominal_estimate, sample_rows,
+};
+use poecal_model::measurement::{Clock, Dataset, MovingRows, Observation, Quantity};
 use poecal_model::robot::{Robot, Tolerance};
 use poecal_numerics::distributions::median;
 use poecal_numerics::error::{ErrorKind, Result, first_few};
@@ -45,7 +47,7 @@ const LONG_S: f64 = 30.0;
 
 /// Measurements in motion with a lag.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AtLag {
+pub struct LaggedMeasurements {
     /// Time of the measurements less that of the joint readings, seconds.
     pub lag_s: f64,
     /// Median error of the nominal robot, metres.
@@ -54,7 +56,7 @@ pub struct AtLag {
 
 /// Measurements in motion with the readings that belong to them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct InMotion {
+pub struct MotionMeasurements {
     /// Clock of the instrument.
     pub clock: Clock,
     /// Rows of the measurements that have readings, with these, their rates and their times from the middle.
@@ -82,18 +84,18 @@ pub struct MovingRow {
 
 /// Result of a search without a unique lag.
 #[derive(Clone, Debug, PartialEq)]
-pub enum NoLag {
+pub enum LagFailure {
     /// The streams hardly overlap, or nothing moves.
     NoMotion,
     /// Several lags fit equally well, the best first.
-    Alike(Vec<AtLag>),
+    Alike(Vec<LaggedMeasurements>),
     /// No lag fits better than by chance.
-    None(AtLag),
+    None(LaggedMeasurements),
 }
 
 /// Measurements in time beside joint readings in time.
 #[derive(Clone, Debug)]
-pub struct Motion<'a> {
+pub struct MotionRecording<'a> {
     robot: &'a Robot,
     joints: &'a JointStream,
     data: &'a Dataset,
@@ -103,20 +105,20 @@ pub struct Motion<'a> {
 
 /// Clock of a search, with the middle of the measurements.
 #[derive(Clone, Copy)]
-struct Guess {
+struct ClockGuess {
     lag_s: f64,
     drift: f64,
     middle_s: f64,
 }
 
-impl Guess {
+impl ClockGuess {
     /// Time of the joint readings at a time of the instrument.
     fn joint_time(&self, time_s: f64) -> f64 {
         time_s - self.lag_s - self.drift * (time_s - self.middle_s)
     }
 }
 
-impl<'a> Motion<'a> {
+impl<'a> MotionRecording<'a> {
     /// Search for measurements that have a time each.
     ///
     /// # Errors
@@ -142,19 +144,24 @@ impl<'a> Motion<'a> {
             return ErrorKind::Measurement
                 .refuse("found measurements without a time, expected a column `time` in both files");
         }
-        Ok(Motion { robot, joints, data, times })
+        Ok(MotionRecording { robot, joints, data, times })
     }
 
     /// Lag and drift at which the measurements fit, near a stated lag (with its largest error, seconds) if there is one.
     ///
     /// # Errors
-    /// [`NoLag`].
-    pub fn found(&self, stated: Option<(f64, f64)>) -> std::result::Result<InMotion, NoLag> {
+    /// [`LagFailure`].
+    pub fn find_lag(
+        &self,
+        stated: Option<(f64, f64)>,
+    ) -> std::result::Result<MotionMeasurements, LagFailure> {
         let lags = self.by_speed(stated);
         let middle_s = self.middle();
-        let mut refined: Vec<AtLag> = Vec::new();
+        let mut refined: Vec<LaggedMeasurements> = Vec::new();
         for lag in lags {
-            let Some(found) = self.refined(Guess { lag_s: lag, drift: 0.0, middle_s }) else { continue };
+            let Some(found) = self.refine_lag(ClockGuess { lag_s: lag, drift: 0.0, middle_s }) else {
+                continue;
+            };
             if stated.is_none_or(|(at, off)| (found.lag_s - at).abs() <= off)
                 && !refined.iter().any(|it| (it.lag_s - found.lag_s).abs() < APART_S)
             {
@@ -162,58 +169,58 @@ impl<'a> Motion<'a> {
             }
         }
         refined.sort_by(|a, b| a.missed_m.total_cmp(&b.missed_m));
-        let Some(&best) = refined.first() else { return Err(NoLag::NoMotion) };
+        let Some(&best) = refined.first() else { return Err(LagFailure::NoMotion) };
         if self.is_chance(best, middle_s) {
-            return Err(NoLag::None(best));
+            return Err(LagFailure::None(best));
         }
         refined.retain(|it| it.missed_m < EVIDENT * best.missed_m);
         if refined.len() > 1 {
-            return Err(NoLag::Alike(refined));
+            return Err(LagFailure::Alike(refined));
         }
-        self.with_geometry(Guess { lag_s: best.lag_s, drift: 0.0, middle_s }, best.missed_m)
-            .ok_or(NoLag::None(best))
+        self.with_geometry(ClockGuess { lag_s: best.lag_s, drift: 0.0, middle_s }, best.missed_m)
+            .ok_or(LagFailure::None(best))
     }
 
     /// First of the times, seconds.
-    fn first(&self) -> f64 {
+    fn first_time_s(&self) -> f64 {
         self.times.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Middle of the times, seconds.
     fn middle(&self) -> f64 {
-        0.5 * (self.first() + self.times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        0.5 * (self.first_time_s() + self.times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
     }
 
     /// Rows as if they were measured at rest at a lag, some of all.
     #[must_use]
     pub fn at_rest(&self, lag_s: f64) -> Option<Dataset> {
-        let (mut data, _) = self.session(&Guess { lag_s, drift: 0.0, middle_s: self.middle() }, SOME)?;
+        let (mut data, _) = self.session(&ClockGuess { lag_s, drift: 0.0, middle_s: self.middle() }, SOME)?;
         data.observations.iter_mut().for_each(|it| it.moving = None);
-        data.moving = Moving::default();
+        data.moving = MovingRows::default();
         Some(data)
     }
 
     /// True if lags that are certainly wrong fit nearly as well, or cannot be compared.
-    fn is_chance(&self, best: AtLag, middle_s: f64) -> bool {
+    fn is_chance(&self, best: LaggedMeasurements, middle_s: f64) -> bool {
         let span = |first: Option<&f64>, last: Option<&f64>| first.zip(last).map_or(0.0, |it| it.1 - it.0);
         let own = self.joints.times();
-        let shorter = span(own.first(), own.last()).min(2.0 * (middle_s - self.first()));
+        let shorter = span(own.first(), own.last()).min(2.0 * (middle_s - self.first_time_s()));
         // For a short recording the wrong lags are smaller, so that a part overlaps.
         let scale = (shorter / LONG_S).min(1.0);
         let others = [-7.3, 5.9, -2.1, 3.4, -13.7, 11.2].map(|by| best.lag_s + scale * by);
-        let missed = others
-            .iter()
-            .filter_map(|&lag_s| Some(self.registered(&Guess { lag_s, drift: 0.0, middle_s }, SOME)?.1));
+        let missed = others.iter().filter_map(|&lag_s| {
+            Some(self.register_at(&ClockGuess { lag_s, drift: 0.0, middle_s }, SOME)?.1)
+        });
         median(missed).is_none_or(|usual| best.missed_m * EVIDENT > usual)
     }
 
     /// Rows that are fitted, at most `most`, at this clock, with the readings at their times.
-    fn session(&self, guess: &Guess, most: usize) -> Option<(Dataset, Vec<u32>)> {
+    fn session(&self, guess: &ClockGuess, most: usize) -> Option<(Dataset, Vec<u32>)> {
         let width = self.data.reading_names().len();
         let mut data =
             Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
         (data.targets, data.stations) = (self.data.targets.clone(), self.data.stations.clone());
-        let Guess { lag_s, drift, middle_s } = *guess;
+        let ClockGuess { lag_s, drift, middle_s } = *guess;
         let stations = 0..data.station_count();
         data.moving.clocks = stations.map(|station| Clock { station, lag_s, drift, middle_s }).collect();
         let (mut readings, mut rates) = (vec![0.0; width], vec![0.0; width]);
@@ -221,7 +228,7 @@ impl<'a> Motion<'a> {
         for row in sample_rows(&self.spread(), most) {
             let (observation, time) =
                 (self.data.observations.get(row as usize)?, *self.times.get(row as usize)?);
-            if !self.joints.at(guess.joint_time(time), &mut readings, &mut rates) {
+            if !self.joints.interpolate(guess.joint_time(time), &mut readings, &mut rates) {
                 continue;
             }
             let plain = Observation { noise_shape: None, ..*observation };
@@ -246,36 +253,36 @@ impl<'a> Motion<'a> {
     }
 
     /// Registration of the nominal robot at a clock, with the median error, metres.
-    fn registered(&self, guess: &Guess, most: usize) -> Option<(Estimate, f64)> {
+    fn register_at(&self, guess: &ClockGuess, most: usize) -> Option<(Estimate, f64)> {
         let (data, _) = self.session(guess, most)?;
-        let packed = Packed::from_dataset(self.robot, &data);
+        let packed = PackedValues::from_dataset(self.robot, &data);
         let held = unknowns(&data, true);
         let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
         let problem = registration(session);
         let rows = data.all_rows();
         let estimate =
-            register_roughly(&Registration { rows: &rows, ..problem }, &delivered(self.robot, &data));
+            register_roughly(&Registration { rows: &rows, ..problem }, &nominal_estimate(self.robot, &data));
         let missed = median(session.errors(&rows, &estimate).iter().map(size))?;
         Some((estimate, missed))
     }
 
     /// Lag near a guess at which the nominal robot fits best.
-    fn refined(&self, guess: Guess) -> Option<AtLag> {
+    fn refine_lag(&self, guess: ClockGuess) -> Option<LaggedMeasurements> {
         let (mut guess, mut missed_m) = (guess, f64::INFINITY);
         let begun = guess.lag_s;
         for _ in 0..ROUNDS_OF_EACH {
             let (data, _) = self.session(&guess, SOME)?;
-            let packed = Packed::from_dataset(self.robot, &data);
+            let packed = PackedValues::from_dataset(self.robot, &data);
             let (held, free) = (unknowns(&data, true), unknowns(&data, false));
             let all = data.all_rows();
             let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
             let rough = register_roughly(
                 &Registration { rows: &all, ..registration(session) },
-                &delivered(self.robot, &data),
+                &nominal_estimate(self.robot, &data),
             );
             let errors = session.errors(&all, &rough);
             missed_m = median(errors.iter().map(size))?;
-            let rows = near(&all, &errors, missed_m);
+            let rows = rows_near(&all, &errors, missed_m);
             let session = session.with_unknowns(&free);
             let found = register_again(&Registration { rows: &rows, ..registration(session) }, &rough);
             let step = found.clock(0).lag_s.clamp(-0.1, 0.1);
@@ -287,22 +294,22 @@ impl<'a> Motion<'a> {
                 break;
             }
         }
-        Some(AtLag { lag_s: guess.lag_s, missed_m })
+        Some(LaggedMeasurements { lag_s: guess.lag_s, missed_m })
     }
 
     /// Lag and drift together with the axes of the robot, all unknown.
-    fn with_geometry(&self, guess: Guess, missed_m: f64) -> Option<InMotion> {
+    fn with_geometry(&self, guess: ClockGuess, missed_m: f64) -> Option<MotionMeasurements> {
         let mut guess = guess;
         let (mut jitter_s, mut fitted_m) = (0.0, f64::INFINITY);
         for _ in 0..ROUNDS {
             let (data, _) = self.session(&guess, MOST)?;
-            let packed = Packed::from_dataset(self.robot, &data);
+            let packed = PackedValues::from_dataset(self.robot, &data);
             let (held, free) = (unknowns(&data, true), Unknowns::USUAL);
             let all = data.all_rows();
             let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
             let mut estimate = register_roughly(
                 &Registration { rows: &all, ..registration(session) },
-                &delivered(self.robot, &data),
+                &nominal_estimate(self.robot, &data),
             );
             let session = session.with_unknowns(&free);
             let prior = Prior::from_session(&session, Tolerance::default());
@@ -310,7 +317,7 @@ impl<'a> Motion<'a> {
             for _ in 0..2 {
                 let errors = session.errors(&all, &estimate);
                 let missed = median(errors.iter().map(size))?;
-                rows = near(&all, &errors, missed);
+                rows = rows_near(&all, &errors, missed);
                 let weight = (missed / NOISE[Quantity::Position]).powi(2);
                 estimate.recentre(&session, &rows);
                 let clocks = (0..data.station_count())
@@ -333,18 +340,18 @@ impl<'a> Motion<'a> {
             }
         }
         let (data, rows) = self.session(&guess, MOST)?;
-        let Guess { lag_s, drift, middle_s } = guess;
+        let ClockGuess { lag_s, drift, middle_s } = guess;
         let rows =
             rows.into_iter().zip(&data.observations).enumerate().filter_map(|(at, (row, observation))| {
                 let (rates, time_s) = data.motion(observation)?;
                 Some(MovingRow { row, readings: data.readings(at).to_vec(), rates: rates.to_vec(), time_s })
             });
         let clock = Clock { station: 0, lag_s, drift, middle_s };
-        Some(InMotion { clock, rows: rows.collect(), missed_m, fitted_m, jitter_s })
+        Some(MotionMeasurements { clock, rows: rows.collect(), missed_m, fitted_m, jitter_s })
     }
 }
 
-impl Motion<'_> {
+impl MotionRecording<'_> {
     /// Lags at which the speeds of the nominal robot and of the measured target are correlated.
     fn by_speed(&self, stated: Option<(f64, f64)>) -> Vec<f64> {
         let mut own = Vec::new();
@@ -354,7 +361,7 @@ impl Motion<'_> {
             own.push(self.robot.forward_kinematics(&values).translation);
         }
         let times = self.joints.times().iter().step_by(step).copied().collect();
-        let joints = Track::new(times, own);
+        let joints = MotionTrack::new(times, own);
         // The target that was seen most is used.
         let most = self.data.most_seen_target().unwrap_or_default();
         let mut seen: Vec<(f64, Vector3<f64>)> = (self.data.observations.iter().zip(self.times))
@@ -364,7 +371,7 @@ impl Motion<'_> {
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         seen.dedup_by(|next, known| next.0 <= known.0);
         let (times, places) = seen.into_iter().unzip();
-        let measured = Track::new(times, places);
+        let measured = MotionTrack::new(times, places);
         let overlap_s = OVERLAP_S.max(OVERLAP * joints.span_s().min(measured.span_s()));
         speeds::lags((&joints, &measured), overlap_s, (CANDIDATES, APART_S), stated)
     }
@@ -386,7 +393,7 @@ fn registration(session: Session<'_>) -> Registration<'_> {
 }
 
 /// Rows whose errors are at most a multiple of the usual one.
-fn near(rows: &[u32], errors: &[RowError], usual: f64) -> Vec<u32> {
+fn rows_near(rows: &[u32], errors: &[RowError], usual: f64) -> Vec<u32> {
     rows.iter().zip(errors).filter(|(_, error)| size(error) <= FAR * usual).map(|(row, _)| *row).collect()
 }
 

@@ -18,17 +18,17 @@ struct Speeds {
 }
 
 /// Positions at some times, in order.
-pub(crate) struct Track {
+pub(crate) struct MotionTrack {
     times: Vec<f64>,
     places: Vec<Vector3<f64>>,
     gap_s: f64,
 }
 
-impl Track {
+impl MotionTrack {
     /// Track of times in order, and positions.
     pub(crate) fn new(times: Vec<f64>, places: Vec<Vector3<f64>>) -> Self {
         let step = median(times.windows(2).map(|it| it[1] - it[0]).filter(|it| *it > 0.0)).unwrap_or(FINE_S);
-        Track { times, places, gap_s: (4.5 * step).max(0.3) }
+        MotionTrack { times, places, gap_s: (4.5 * step).max(0.3) }
     }
 
     /// Length of the track, seconds.
@@ -36,7 +36,7 @@ impl Track {
         self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    fn at(&self, time_s: f64) -> Option<Vector3<f64>> {
+    fn position_at(&self, time_s: f64) -> Option<Vector3<f64>> {
         let after = self.times.partition_point(|it| *it <= time_s);
         let (from, to) = (after.checked_sub(1)?, after);
         let (a, b) = (*self.times.get(from)?, *self.times.get(to)?);
@@ -52,7 +52,9 @@ impl Track {
         let count = (self.span_s() / step_s) as usize + 1;
         let speed = |at: usize| {
             let (from, to) = (first_s + (at as f64 - 0.5) * step_s, first_s + (at as f64 + 0.5) * step_s);
-            self.at(from).zip(self.at(to)).map_or(f64::NAN, |(a, b)| (b - a).norm() / step_s)
+            self.position_at(from)
+                .zip(self.position_at(to))
+                .map_or(f64::NAN, |(a, b)| (b - a).norm() / step_s)
         };
         Speeds { first_s, step_s, values: (0..count).map(speed).collect() }
     }
@@ -80,7 +82,7 @@ fn correlation(one: &Speeds, other: &Speeds, by: isize, fewest: usize) -> Option
 /// Lags (time of the second less that of the first) by correlation, the best first. Their largest number, their least distance and the least
 /// overlap are limited; with a stated lag (and its largest error) only lags near it count.
 pub(crate) fn lags(
-    (one, other): (&Track, &Track),
+    (one, other): (&MotionTrack, &MotionTrack),
     overlap_s: f64,
     (most, apart_s): (usize, f64),
     stated: Option<(f64, f64)>,
@@ -111,7 +113,7 @@ pub(crate) fn lags(
         if value < SHARE * best || value <= 0.0 || found.len() >= most {
             break;
         }
-        let near = finer((one, other), lag, coarse, overlap_s);
+        let near = refine_lag((one, other), lag, coarse, overlap_s);
         if found.iter().all(|it| (it - near).abs() >= apart_s) && is_allowed(near, FINE_S) {
             found.push(near);
         }
@@ -126,7 +128,7 @@ fn other_first(one: &Speeds, other: &Speeds) -> f64 {
 }
 
 /// Lag near one that was found with coarse steps.
-fn finer((one, other): (&Track, &Track), lag: f64, coarse: f64, overlap_s: f64) -> f64 {
+fn refine_lag((one, other): (&MotionTrack, &MotionTrack), lag: f64, coarse: f64, overlap_s: f64) -> f64 {
     if coarse <= FINE_S {
         return lag;
     }

@@ -10,7 +10,7 @@ pub fn mm(metres: f64) -> String {
 
 /// Lines in words.
 #[must_use]
-pub fn numbered(lines: &[String]) -> String {
+pub fn number_lines(lines: &[String]) -> String {
     numbered_as("line", lines)
 }
 

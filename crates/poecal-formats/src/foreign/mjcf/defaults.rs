@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::{Matrix3, Unit, Vector3};
 use roxmltree::Node;
 
-use super::{described, unit};
+use super::{describe_element, unit};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::Result;
 use poecal_storage::xml::XmlSource;
@@ -15,15 +15,15 @@ use poecal_storage::xml::XmlSource;
 const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// Settings for the interpretation of numbers.
-pub(crate) struct Settings<'a> {
+pub(crate) struct CompilerSettings<'a> {
     in_degrees: bool,
     pub(crate) limits_alone: bool,
     euler: &'a str,
 }
 
-impl<'a> Settings<'a> {
+impl<'a> CompilerSettings<'a> {
     pub(crate) fn read(source: &XmlSource<'a>, root: Node<'a, 'a>) -> Result<Self> {
-        let mut settings = Settings { in_degrees: true, limits_alone: true, euler: "xyz" };
+        let mut settings = CompilerSettings { in_degrees: true, limits_alone: true, euler: "xyz" };
         for node in source.children(root, "compiler") {
             let is = |name: &str, words: [&str; 2], expected: &str| -> Result<Option<bool>> {
                 let word = node.attribute(name);
@@ -73,15 +73,15 @@ impl<'a> Settings<'a> {
 
 /// An element, and the class of its defaults if it names none.
 #[derive(Clone, Copy)]
-pub(crate) struct Stated<'a> {
+pub(crate) struct ElementClass<'a> {
     pub(crate) node: Node<'a, 'a>,
     pub(crate) class: Option<&'a str>,
 }
 
 /// Attributes of elements, with their defaults.
-pub(crate) struct Defaults<'a> {
+pub(crate) struct MjcfDefaults<'a> {
     pub(crate) source: XmlSource<'a>,
-    pub(crate) settings: Settings<'a>,
+    pub(crate) settings: CompilerSettings<'a>,
     /// Blocks of defaults: the element, and the block from which it inherits.
     classes: Vec<(Node<'a, 'a>, Option<usize>)>,
     /// The block of each class.
@@ -90,10 +90,14 @@ pub(crate) struct Defaults<'a> {
     main: String,
 }
 
-impl<'a> Defaults<'a> {
-    pub(crate) fn read(source: XmlSource<'a>, settings: Settings<'a>, root: Node<'a, 'a>) -> Result<Self> {
+impl<'a> MjcfDefaults<'a> {
+    pub(crate) fn read(
+        source: XmlSource<'a>,
+        settings: CompilerSettings<'a>,
+        root: Node<'a, 'a>,
+    ) -> Result<Self> {
         let (classes, blocks, main) = (Vec::new(), BTreeMap::new(), String::new());
-        let mut defaults = Defaults { source, settings, classes, blocks, main };
+        let mut defaults = MjcfDefaults { source, settings, classes, blocks, main };
         for node in source.children(root, "default") {
             defaults.add(node)?;
         }
@@ -123,7 +127,7 @@ impl<'a> Defaults<'a> {
     /// The first element with one of these attributes: the element itself, or the nearest default of its class for elements of this name.
     pub(crate) fn stating_one(
         &self,
-        Stated { node, class }: Stated<'a>,
+        ElementClass { node, class }: ElementClass<'a>,
         tag: &str,
         names: &[&str],
     ) -> Result<Option<Node<'a, 'a>>> {
@@ -149,17 +153,21 @@ impl<'a> Defaults<'a> {
     }
 
     /// The element that states an attribute.
-    pub(crate) fn stating(&self, of: Stated<'a>, name: &str) -> Result<Option<Node<'a, 'a>>> {
+    pub(crate) fn find_stating(&self, of: ElementClass<'a>, name: &str) -> Result<Option<Node<'a, 'a>>> {
         self.stating_one(of, of.node.tag_name().name(), &[name])
     }
 
-    pub(crate) fn word(&self, of: Stated<'a>, name: &str) -> Result<Option<&'a str>> {
-        Ok(self.stating(of, name)?.and_then(|it| it.attribute(name)))
+    pub(crate) fn word(&self, of: ElementClass<'a>, name: &str) -> Result<Option<&'a str>> {
+        Ok(self.find_stating(of, name)?.and_then(|it| it.attribute(name)))
     }
 
-    pub(crate) fn numbers<const N: usize>(&self, of: Stated<'a>, name: &str) -> Result<Option<[f64; N]>> {
-        let Some(stating) = self.stating(of, name)? else { return Ok(None) };
-        self.source.numbers(stating, name, &described(of.node))
+    pub(crate) fn numbers<const N: usize>(
+        &self,
+        of: ElementClass<'a>,
+        name: &str,
+    ) -> Result<Option<[f64; N]>> {
+        let Some(stating) = self.find_stating(of, name)? else { return Ok(None) };
+        self.source.numbers(stating, name, &describe_element(of.node))
     }
 
     /// A stated direction, with length 1.
@@ -168,18 +176,18 @@ impl<'a> Defaults<'a> {
     }
 
     fn no_length(&self, node: Node<'a, 'a>, what: &str) -> poecal_numerics::error::Error {
-        self.source.error(node, format!("found {what} of no length in {}", described(node)))
+        self.source.error(node, format!("found {what} of no length in {}", describe_element(node)))
     }
 
     /// The pose of an element: `pos`, and one of five attributes for the rotation.
-    pub(crate) fn pose(&self, element: Stated<'a>) -> Result<Pose> {
+    pub(crate) fn pose(&self, element: ElementClass<'a>) -> Result<Pose> {
         let node = element.node;
         let position = self.numbers::<3>(element, "pos")?.unwrap_or_default();
         // The element that states the rotation determines it alone, whatever outer defaults state.
         let Some(stating) = self.stating_one(element, node.tag_name().name(), &ROTATIONS)? else {
             return Ok(Pose::from_translation(position.into()));
         };
-        let of = described(node);
+        let of = describe_element(node);
         let mut words = ROTATIONS.into_iter().filter(|name| stating.has_attribute(*name));
         if let (Some(word), Some(second)) = (words.next(), words.next()) {
             let message = format!("found `{word}` and `{second}` in {of}, expected one of them");

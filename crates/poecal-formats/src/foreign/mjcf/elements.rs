@@ -4,7 +4,7 @@ use nalgebra::{Unit, Vector3};
 use roxmltree::Node;
 
 /// Name of an element in messages.
-pub(crate) fn described(node: Node<'_, '_>) -> String {
+pub(crate) fn describe_element(node: Node<'_, '_>) -> String {
     let tag = node.tag_name().name();
     match node.attribute("name") {
         Some(name) => format!("<{tag}> `{name}`"),

@@ -3,11 +3,11 @@
 use nalgebra::{Unit, Vector3};
 use roxmltree::Node;
 
-use super::defaults::Stated;
-use super::{Part, Reader, described};
+use super::defaults::ElementClass;
+use super::{BodyElement, MjcfReader, describe_element};
 use crate::foreign::links::{LinkJoint, LinkJointKind, Mimic};
 use poecal_arm::lie::Pose;
-use poecal_model::robot::Limits;
+use poecal_model::robot::JointLimits;
 use poecal_numerics::error::Result;
 
 const KINDS: [(&str, LinkJointKind); 4] = [
@@ -18,7 +18,7 @@ const KINDS: [(&str, LinkJointKind); 4] = [
 ];
 const LIMITED: [(&str, Option<bool>); 3] = [("true", Some(true)), ("false", Some(false)), ("auto", None)];
 
-impl<'a> Reader<'a, '_> {
+impl<'a> MjcfReader<'a, '_> {
     /// The link of the last joint, which is added if the joint does not end at its body.
     pub(crate) fn link_of_last(&mut self, parent: &str, body: Node<'a, 'a>) -> String {
         let Some(last) = self.links.joints.last().filter(|it| it.child.is_empty()) else {
@@ -39,13 +39,13 @@ impl<'a> Reader<'a, '_> {
     /// axis.
     pub(crate) fn read_joint(
         &mut self,
-        Part { stated, body_from_frame }: Part<'a>,
+        BodyElement { stated, body_from_frame }: BodyElement<'a>,
         (parent, parent_from_body): (&str, &Pose),
         body: Node<'a, 'a>,
     ) -> Result<(String, Pose)> {
         let parent = self.link_of_last(parent, body);
         let (node, known) = (stated.node, &self.defaults);
-        let of = described(node);
+        let of = describe_element(node);
         let word = known.word(stated, "type")?.unwrap_or("hinge");
         let kind = if node.has_tag_name("freejoint") {
             LinkJointKind::Free
@@ -73,13 +73,13 @@ impl<'a> Reader<'a, '_> {
             &LIMITED,
             "true, false or auto",
         )?;
-        let range = match known.stating(stated, "range")? {
+        let range = match known.find_stating(stated, "range")? {
             Some(stating) => known.source.bounds::<2>(stating, "range", &of)?,
             None => None,
         };
         let counts = limited.unwrap_or(known.settings.limits_alone);
         let range = range.filter(|_| counts).map(|range| range.map(angle));
-        let limits = range.and_then(|[lower, upper]| Limits::between(lower, upper));
+        let limits = range.and_then(|[lower, upper]| JointLimits::from_bounds(lower, upper));
         let body_from_joint = Pose::from_translation(place);
         // The poses of bodies are stated for the joint at its reference.
         let back = kind.motion(&axis, -reference).unwrap_or_else(Pose::identity);
@@ -96,7 +96,8 @@ impl<'a> Reader<'a, '_> {
     pub(crate) fn read_followers(&mut self, equality: Node<'a, 'a>) -> Result<()> {
         let source = self.defaults.source;
         for node in source.children(equality, "joint") {
-            let active = self.defaults.stating_one(Stated { node, class: None }, "equality", &["active"])?;
+            let active =
+                self.defaults.stating_one(ElementClass { node, class: None }, "equality", &["active"])?;
             if active.is_some_and(|it| it.attribute("active") == Some("false")) {
                 continue;
             }

@@ -9,14 +9,14 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::links::{Inertial, Links};
-use crate::unread;
-use defaults::{Defaults, Settings, Stated};
-use elements::{described, unit};
+use super::links::{Inertial, LinkTree};
+use crate::unread_elements;
+use defaults::{CompilerSettings, ElementClass, MjcfDefaults};
+use elements::{describe_element, unit};
 use poecal_arm::lie::Pose;
 use poecal_model::robot::Mass;
 use poecal_numerics::error::Result;
-use poecal_storage::xml::{XmlSource, parsed, readable};
+use poecal_storage::xml::{XmlSource, declare_prefixes, parsed};
 
 /// The body around all bodies.
 const WORLD: &str = "world";
@@ -26,8 +26,8 @@ const EXPECTED: &str = "a model of MuJoCo";
 const MADE_BY_MUJOCO: [&str; 4] = ["include", "replicate", "attach", "composite"];
 
 /// The links; sites of these names are links too.
-pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
-    let text = readable(text);
+pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<LinkTree> {
+    let text = declare_prefixes(text);
     let document = parsed(&text, path, EXPECTED)?;
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
@@ -43,11 +43,11 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
         );
         return Err(source.syntax_error(node, message));
     }
-    let settings = Settings::read(&source, root)?;
-    let mut reader = Reader {
-        defaults: Defaults::read(source, settings, root)?,
+    let settings = CompilerSettings::read(&source, root)?;
+    let mut reader = MjcfReader {
+        defaults: MjcfDefaults::read(source, settings, root)?,
         named,
-        links: Links::new(root.attribute("model").unwrap_or("robot")),
+        links: LinkTree::new(root.attribute("model").unwrap_or("robot")),
         references: BTreeMap::new(),
     };
     let names = |tags: &[&str]| {
@@ -63,21 +63,21 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     for equality in source.children(root, "equality") {
         reader.read_followers(equality)?;
     }
-    reader.links.unread = unread::sentence(&source, root, unread::MJCF)?;
+    reader.links.unread = unread_elements::sentence(&source, root, unread_elements::MJCF)?;
     Ok(reader.links)
 }
 
-struct Reader<'a, 'b> {
-    defaults: Defaults<'a>,
+struct MjcfReader<'a, 'b> {
+    defaults: MjcfDefaults<'a>,
     named: &'b [&'b str],
-    links: Links,
+    links: LinkTree,
     /// Value of each joint in the pose in which bodies are stated.
     references: BTreeMap<String, f64>,
 }
 
 /// Contents of a body: their pose in the link, the class of their defaults, and whether the only site is the tip.
 #[derive(Clone)]
-struct Inside<'a> {
+struct BodyItem<'a> {
     link: String,
     link_from_here: Pose,
     class: Option<&'a str>,
@@ -86,15 +86,15 @@ struct Inside<'a> {
 
 /// An element of a body, in a frame within the body or not: its pose in the body.
 #[derive(Clone, Copy)]
-struct Part<'a> {
-    stated: Stated<'a>,
+struct BodyElement<'a> {
+    stated: ElementClass<'a>,
     body_from_frame: Pose,
 }
 
-impl<'a> Reader<'a, '_> {
+impl<'a> MjcfReader<'a, '_> {
     /// Bodies in the world's body.
     fn read_bodies(&mut self, world: Node<'a, 'a>) -> Result<()> {
-        let here = Inside {
+        let here = BodyItem {
             link: WORLD.to_owned(),
             link_from_here: Pose::identity(),
             class: world.attribute("childclass"),
@@ -105,12 +105,12 @@ impl<'a> Reader<'a, '_> {
         while let Some((node, here)) = steps.pop() {
             let mut next = Vec::new();
             for child in node.children().filter(Node::is_element) {
-                let stated = Stated { node: child, class: here.class };
+                let stated = ElementClass { node: child, class: here.class };
                 match child.tag_name().name() {
                     "frame" => {
                         let link_from_here = here.link_from_here * self.defaults.pose(stated)?;
                         let class = child.attribute("childclass").or(here.class);
-                        next.push((child, Inside { link_from_here, class, ..here.clone() }));
+                        next.push((child, BodyItem { link_from_here, class, ..here.clone() }));
                     }
                     "body" => next.push((child, self.read_body(stated, &here)?)),
                     "site" => self.read_site(stated, &here)?,
@@ -123,14 +123,14 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// Reads a site as a link, if it is named or the only one at the end of a chain.
-    fn read_site(&mut self, site: Stated<'a>, here: &Inside<'a>) -> Result<()> {
+    fn read_site(&mut self, site: ElementClass<'a>, here: &BodyItem<'a>) -> Result<()> {
         let name = site.node.attribute("name").unwrap_or_default();
         let is_wanted = self.named.contains(&name) && !self.links.has(name);
         if name.is_empty() || !(here.ends_in_site || is_wanted) {
             return Ok(());
         }
-        if self.defaults.stating(site, "fromto")?.is_some() {
-            let of = described(site.node);
+        if self.defaults.find_stating(site, "fromto")?.is_some() {
+            let of = describe_element(site.node);
             let message = format!("found `fromto` of {of}, expected a site with a pose of its own");
             return self.defaults.source.refuse(site.node, message);
         }
@@ -146,20 +146,20 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// Elements of a body that belong to it, also those in frames within it, in the order of the file.
-    fn parts(&self, body: Stated<'a>, tags: &[&str]) -> Result<Vec<Part<'a>>> {
+    fn parts(&self, body: ElementClass<'a>, tags: &[&str]) -> Result<Vec<BodyElement<'a>>> {
         let mut found = Vec::new();
-        let own = |of: Stated<'a>, body_from_frame| {
+        let own = |of: ElementClass<'a>, body_from_frame| {
             let children: Vec<_> = of.node.children().filter(Node::is_element).collect();
-            let part = move |node| Part { stated: Stated { node, ..of }, body_from_frame };
+            let part = move |node| BodyElement { stated: ElementClass { node, ..of }, body_from_frame };
             children.into_iter().rev().map(part)
         };
-        let mut steps: Vec<Part<'a>> = own(body, Pose::identity()).collect();
+        let mut steps: Vec<BodyElement<'a>> = own(body, Pose::identity()).collect();
         while let Some(part) = steps.pop() {
-            let Stated { node, class } = part.stated;
+            let ElementClass { node, class } = part.stated;
             if node.has_tag_name("frame") {
                 let body_from_frame = part.body_from_frame * self.defaults.pose(part.stated)?;
                 let class = node.attribute("childclass").or(class);
-                steps.extend(own(Stated { node, class }, body_from_frame));
+                steps.extend(own(ElementClass { node, class }, body_from_frame));
             } else if tags.contains(&node.tag_name().name()) {
                 found.push(part);
             }
@@ -168,10 +168,10 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// Reads a body with its joints; its contents are in its frame.
-    fn read_body(&mut self, body: Stated<'a>, outer: &Inside<'a>) -> Result<Inside<'a>> {
+    fn read_body(&mut self, body: ElementClass<'a>, outer: &BodyItem<'a>) -> Result<BodyItem<'a>> {
         let node = body.node;
         let class = node.attribute("childclass").or(body.class);
-        let own = Stated { node, class };
+        let own = ElementClass { node, class };
         let mut parent = outer.link.clone();
         let mut parent_from_body = outer.link_from_here * self.defaults.pose(body)?;
         for joint in self.parts(own, &["joint", "freejoint"])? {
@@ -193,17 +193,17 @@ impl<'a> Reader<'a, '_> {
         }
         let is_leaf = self.parts(own, &["body"])?.is_empty();
         let ends_in_site = is_leaf && self.parts(own, &["site"])?.len() == 1;
-        Ok(Inside { link, link_from_here: Pose::identity(), class, ends_in_site })
+        Ok(BodyItem { link, link_from_here: Pose::identity(), class, ends_in_site })
     }
 
-    fn inertial(&self, body: Stated<'a>) -> Result<Option<Inertial>> {
+    fn inertial(&self, body: ElementClass<'a>) -> Result<Option<Inertial>> {
         let parts = self.parts(body, &["inertial"])?;
-        let Some(&Part { stated: Stated { node, .. }, body_from_frame }) = parts.first() else {
+        let Some(&BodyElement { stated: ElementClass { node, .. }, body_from_frame }) = parts.first() else {
             return Ok(None);
         };
-        let kg = self.defaults.source.number(node, "mass", &described(body.node))?;
+        let kg = self.defaults.source.number(node, "mass", &describe_element(body.node))?;
         let Some(kg) = kg else { return Ok(None) };
-        let pose = body_from_frame * self.defaults.pose(Stated { node, class: None })?;
+        let pose = body_from_frame * self.defaults.pose(ElementClass { node, class: None })?;
         Ok(Some(Inertial { pose, kg }).filter(|it| Mass::is_mass(it.kg)))
     }
 }

@@ -15,7 +15,7 @@ use poecal_storage::xml::XmlSource;
 const DEEPEST: usize = 64;
 
 /// Something with a pose.
-pub(crate) struct Frame<'a> {
+pub(crate) struct SdfFrame<'a> {
     pub(crate) node: Option<Node<'a, 'a>>,
     pose: Pose,
     /// Name of the frame in which the pose is stated; empty for the world.
@@ -25,9 +25,9 @@ pub(crate) struct Frame<'a> {
 }
 
 /// The frames of a model and of models within it.
-pub(crate) struct Frames<'a> {
+pub(crate) struct SdfFrames<'a> {
     pub(crate) source: XmlSource<'a>,
-    pub(crate) found: BTreeMap<String, Frame<'a>>,
+    pub(crate) found: BTreeMap<String, SdfFrame<'a>>,
     /// Poses in the world that were computed so far.
     placed: RefCell<BTreeMap<String, Pose>>,
     /// Names of links and joints, in the order of the file, with their model's prefix.
@@ -35,13 +35,13 @@ pub(crate) struct Frames<'a> {
     pub(crate) joints: Vec<(String, String)>,
 }
 
-impl<'a> Frames<'a> {
+impl<'a> SdfFrames<'a> {
     /// The frames of a model.
     pub(crate) fn from_model(source: XmlSource<'a>, model: Node<'a, 'a>) -> Result<Self> {
         let (found, placed) = (BTreeMap::new(), RefCell::default());
-        let mut frames = Frames { source, found, placed, links: Vec::new(), joints: Vec::new() };
+        let mut frames = SdfFrames { source, found, placed, links: Vec::new(), joints: Vec::new() };
         let (pose, base, on) = (Pose::identity(), String::new(), Some(WORLD.to_owned()));
-        frames.found.insert(WORLD.to_owned(), Frame { node: None, pose, base, on });
+        frames.found.insert(WORLD.to_owned(), SdfFrame { node: None, pose, base, on });
         let mut steps = vec![(model, String::new(), WORLD.to_owned())];
         while let Some((model, prefix, around)) = steps.pop() {
             frames.read_model(model, &prefix, around, &mut steps)?;
@@ -50,7 +50,7 @@ impl<'a> Frames<'a> {
     }
 
     /// A name within a model.
-    pub(crate) fn within(prefix: &str, name: &str) -> String {
+    pub(crate) fn join_name(prefix: &str, name: &str) -> String {
         if name == WORLD { WORLD.to_owned() } else { format!("{prefix}{name}") }
     }
 
@@ -79,22 +79,22 @@ impl<'a> Frames<'a> {
         let (pose, base) = self.pose(model, &of)?;
         let outer = prefix.trim_end_matches("::").rsplit_once("::");
         let outer = outer.filter(|it| !it.0.is_empty()).map_or(String::new(), |it| format!("{}::", it.0));
-        let base = base.map_or(around, |base| Self::within(&outer, base));
-        let on = model.attribute("canonical_link").or(links).map(|link| Self::within(prefix, link));
-        self.found.insert(own.clone(), Frame { node: Some(model), pose, base, on });
+        let base = base.map_or(around, |base| Self::join_name(&outer, base));
+        let on = model.attribute("canonical_link").or(links).map(|link| Self::join_name(prefix, link));
+        self.found.insert(own.clone(), SdfFrame { node: Some(model), pose, base, on });
         for node in model.children().filter(Node::is_element) {
             let tag = node.tag_name().name();
             if !["link", "joint", "frame", "model"].contains(&tag) {
                 continue;
             }
-            let (word, _) = self.source.required(node, "name", &format!("a <{tag}>"))?;
-            let name = Self::within(prefix, word);
+            let (word, _) = self.source.require_attribute(node, "name", &format!("a <{tag}>"))?;
+            let name = Self::join_name(prefix, word);
             if tag == "model" {
                 steps.push((node, format!("{name}::"), own.clone()));
                 // Its name is a frame too.
                 let alias = format!("{name}::{MODEL}");
                 let (pose, base, on) = (Pose::identity(), alias.clone(), Some(alias));
-                self.found.insert(name, Frame { node: Some(node), pose, base, on });
+                self.found.insert(name, SdfFrame { node: Some(node), pose, base, on });
                 continue;
             }
             let of = format!("<{tag}> `{word}`");
@@ -118,19 +118,19 @@ impl<'a> Frames<'a> {
         node: Node<'a, 'a>,
         (prefix, name, own): (&str, &str, &str),
         of: &str,
-    ) -> Result<Frame<'a>> {
+    ) -> Result<SdfFrame<'a>> {
         let (pose, base) = self.pose(node, of)?;
-        let base = base.map(|base| Self::within(prefix, base));
+        let base = base.map(|base| Self::join_name(prefix, base));
         let (default, on) = match node.tag_name().name() {
             "link" => (own.to_owned(), Some(name.to_owned())),
-            "joint" => (Self::within(prefix, &self.child_text(node, "child", of)?), None),
+            "joint" => (Self::join_name(prefix, &self.child_text(node, "child", of)?), None),
             _ => {
                 let on = node.attribute("attached_to").filter(|it| !it.is_empty());
-                let on = Self::within(prefix, on.unwrap_or(MODEL));
+                let on = Self::join_name(prefix, on.unwrap_or(MODEL));
                 (on.clone(), Some(on))
             }
         };
-        Ok(Frame { node: Some(node), pose, base: base.unwrap_or(default), on })
+        Ok(SdfFrame { node: Some(node), pose, base: base.unwrap_or(default), on })
     }
 
     pub(crate) fn child_text(&self, node: Node<'a, 'a>, name: &'static str, of: &str) -> Result<String> {
@@ -230,7 +230,7 @@ impl<'a> Frames<'a> {
     pub(crate) fn world_from(&self, name: &str) -> Result<Pose> {
         let (mut at, mut asking) = (name, None);
         // The walk goes from the frame to the first one with a known pose, and back.
-        let mut passed: Vec<(&str, &Frame)> = Vec::new();
+        let mut passed: Vec<(&str, &SdfFrame)> = Vec::new();
         while passed.len() <= self.found.len() {
             let known = self.placed.borrow().get(at).copied();
             let mut pose = match known {
@@ -273,7 +273,7 @@ impl<'a> Frames<'a> {
                             let prefix = at
                                 .rsplit_once("::")
                                 .map_or(String::new(), |(prefix, _)| format!("{prefix}::"));
-                            Self::within(&prefix, &child)
+                            Self::join_name(&prefix, &child)
                         }
                         None => break,
                     };

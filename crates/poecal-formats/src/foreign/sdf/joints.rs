@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use nalgebra::{Unit, Vector3};
 use roxmltree::Node;
 
-use super::frames::Frames;
+use super::frames::SdfFrames;
 use super::{MODEL, WORLD, text_of};
-use crate::foreign::links::{Inertial, LinkJoint, LinkJointKind, Links, Mimic};
+use crate::foreign::links::{Inertial, LinkJoint, LinkJointKind, LinkTree, Mimic};
 use poecal_arm::lie::Pose;
-use poecal_model::robot::{Limits, Mass};
+use poecal_model::robot::{JointLimits, Mass};
 use poecal_numerics::error::Result;
 
 /// Rounding of poses over the frames in between.
@@ -26,10 +26,10 @@ const KINDS: [(&str, LinkJointKind); 9] = [
     ("gearbox", LinkJointKind::Free),
 ];
 
-impl<'a> Frames<'a> {
+impl<'a> SdfFrames<'a> {
     /// Links and joints with their poses.
-    pub(crate) fn links(&self, name: &str, version: u32, named: &[&str]) -> Result<Links> {
-        let mut links = Links::new(name);
+    pub(crate) fn links(&self, name: &str, version: u32, named: &[&str]) -> Result<LinkTree> {
+        let mut links = LinkTree::new(name);
         let joined: BTreeSet<String> = self
             .joints
             .iter()
@@ -63,7 +63,7 @@ impl<'a> Frames<'a> {
 
     fn join(
         &self,
-        links: &mut Links,
+        links: &mut LinkTree,
         (prefix, joint): (&str, &str),
         node: Node<'a, 'a>,
         version: u32,
@@ -71,13 +71,13 @@ impl<'a> Frames<'a> {
         let of = format!("<joint> `{joint}`");
         let link = |which| -> Result<String> {
             let name = self.child_text(node, which, &of)?;
-            self.link_of(&Self::within(prefix, &name), node)
+            self.link_of(&Self::join_name(prefix, &name), node)
         };
         let (parent, child) = (link("parent")?, link("child")?);
         let (world_from_joint, world_from_child) = (self.world_from(joint)?, self.world_from(&child)?);
         let parent_from_joint = self.world_from(&parent)?.inverse() * world_from_joint;
         let joint_from_child = world_from_joint.inverse() * world_from_child;
-        let (kind, _) = self.source.required(node, "type", &of)?;
+        let (kind, _) = self.source.require_attribute(node, "type", &of)?;
         let expected = "revolute, continuous, prismatic or fixed";
         let kind = self.source.meaning(node, ("type", kind), &format!("in {of}"), &KINDS, expected)?;
         let name = links.joint_name(Some(joint), joint);
@@ -127,7 +127,7 @@ impl<'a> Frames<'a> {
         };
         let named = xyz.and_then(|xyz| xyz.attribute("expressed_in")).filter(|it| !it.is_empty());
         let frame = match (named, in_model) {
-            (Some(name), _) => Self::within(prefix, name),
+            (Some(name), _) => Self::join_name(prefix, name),
             (None, true) => format!("{prefix}{MODEL}"),
             (None, false) => return Ok(direction),
         };
@@ -135,21 +135,21 @@ impl<'a> Frames<'a> {
         Ok(Unit::new_normalize(joint_from_frame.rotation * direction.into_inner()))
     }
 
-    fn limits(&self, axis: Node<'a, 'a>, of: &str) -> Result<Option<Limits>> {
+    fn limits(&self, axis: Node<'a, 'a>, of: &str) -> Result<Option<JointLimits>> {
         let Some(limit) = self.source.child(axis, "limit") else { return Ok(None) };
         let bounds = (self.number(limit, "lower", of)?, self.number(limit, "upper", of)?);
         let (Some(lower), Some(upper)) = bounds else { return Ok(None) };
-        Ok(Limits::between(lower, upper))
+        Ok(JointLimits::from_bounds(lower, upper))
     }
 
     /// The relation `q = multiplier (q' − reference) + offset`.
     fn mimic(&self, axis: Node<'a, 'a>, (prefix, of): (&str, &str)) -> Result<Option<Mimic>> {
         let Some(node) = self.source.child(axis, "mimic") else { return Ok(None) };
-        let (joint, _) = self.source.required(node, "joint", of)?;
+        let (joint, _) = self.source.require_attribute(node, "joint", of)?;
         let number = |name| self.number(node, name, of);
         let multiplier = number("multiplier")?.unwrap_or(1.0);
         let offset = number("offset")?.unwrap_or(0.0) - multiplier * number("reference")?.unwrap_or(0.0);
-        Ok(Some(Mimic { joint: Self::within(prefix, joint), multiplier, offset }))
+        Ok(Some(Mimic { joint: Self::join_name(prefix, joint), multiplier, offset }))
     }
 
     fn inertial(&self, link: Node<'a, 'a>, name: &str) -> Result<Option<Inertial>> {

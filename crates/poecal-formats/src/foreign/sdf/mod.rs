@@ -8,19 +8,19 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::links::Links;
-use crate::unread;
-use frames::Frames;
+use super::links::LinkTree;
+use crate::unread_elements;
+use frames::SdfFrames;
 use poecal_numerics::error::Result;
-use poecal_storage::xml::{XmlSource, parsed, readable};
+use poecal_storage::xml::{XmlSource, declare_prefixes, parsed};
 use words::{MODEL, WORLD, text_of};
 
 /// Expected model, in errors.
 const EXPECTED: &str = "a model of Gazebo (SDF)";
 
 /// The links; frames of these names are links too.
-pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
-    let text = readable(text);
+pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<LinkTree> {
+    let text = declare_prefixes(text);
     let document = parsed(&text, path, EXPECTED)?;
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
@@ -32,9 +32,12 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     }
     let version =
         root.attribute("version").and_then(|it| it.split_once('.')?.1.parse::<u32>().ok()).unwrap_or(12);
-    let unread = unread::sentence(&source, root, unread::SDF)?;
-    let mut links =
-        Frames::from_model(source, model)?.links(model.attribute("name").unwrap_or("robot"), version, named)?;
+    let unread = unread_elements::sentence(&source, root, unread_elements::SDF)?;
+    let mut links = SdfFrames::from_model(source, model)?.links(
+        model.attribute("name").unwrap_or("robot"),
+        version,
+        named,
+    )?;
     links.unread = unread;
     Ok(links)
 }

@@ -7,21 +7,21 @@ const HEAD: usize = 4;
 
 /// A message, read from its beginning on.
 #[derive(Clone, Debug)]
-pub(crate) struct Cdr<'m> {
+pub(crate) struct CdrReader<'m> {
     /// The bytes behind the head.
     bytes: &'m [u8],
     at: usize,
     is_little: bool,
 }
 
-impl<'m> Cdr<'m> {
+impl<'m> CdrReader<'m> {
     /// The values of a message; an error states what was found.
     pub(crate) fn new(message: &'m [u8]) -> Result<Self, String> {
         let Some((head, bytes)) = message.split_at_checked(HEAD) else {
             return Err(format!("{} bytes", message.len()));
         };
         match head {
-            [0, order @ (0 | 1), ..] => Ok(Cdr { bytes, at: 0, is_little: *order == 1 }),
+            [0, order @ (0 | 1), ..] => Ok(CdrReader { bytes, at: 0, is_little: *order == 1 }),
             [high, low, ..] => Err(format!("the encapsulation 0x{high:02X}{low:02X}")),
             _ => Err("no head".to_owned()),
         }
@@ -135,7 +135,7 @@ mod tests {
         ]
         .concat();
         for bytes in [little, big] {
-            let mut cdr = Cdr::new(&bytes).unwrap();
+            let mut cdr = CdrReader::new(&bytes).unwrap();
             assert_eq!(cdr.text(), Ok("ab"));
             assert_eq!(cdr.i32(), Ok(-2));
             assert_eq!(cdr.f64(), Ok(1.5));
@@ -153,11 +153,14 @@ mod tests {
             (&[0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF], "its end after 8 bytes"),
             (&[0, 1, 0, 0, 1, 0, 0, 0, 0xFF], "a text that is no UTF-8"),
         ] {
-            assert_eq!(Cdr::new(bytes).and_then(|mut it| it.text().map(str::len)), Err(found.to_owned()));
+            assert_eq!(
+                CdrReader::new(bytes).and_then(|mut it| it.text().map(str::len)),
+                Err(found.to_owned())
+            );
         }
         let huge = [0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0];
         let refused = Err("a sequence of 4294967295 in the last 4 bytes".to_owned());
-        assert_eq!(Cdr::new(&huge).and_then(|mut it| it.numbers()), refused);
-        assert!(Cdr::new(&huge).and_then(|mut it| it.texts().map(|it| it.len())).is_err());
+        assert_eq!(CdrReader::new(&huge).and_then(|mut it| it.numbers()), refused);
+        assert!(CdrReader::new(&huge).and_then(|mut it| it.texts().map(|it| it.len())).is_err());
     }
 }

@@ -1,11 +1,11 @@
 //! Choice of the topics of a bag to be read: the only possible ones, or those that the user asked for.
 
 use super::super::bodies::which_move;
-use super::super::maker::Made;
-use super::super::recording::Missing;
-use super::bodies::{Bodies, Body};
-use super::joints::Readings;
-use super::topics::{Content, Topic, Topics};
+use super::super::made_table::MadeTable;
+use super::super::recording::MissingTable;
+use super::bodies::{TopicBodies, TopicBody};
+use super::joints::TopicReadings;
+use super::topics::{Topic, TopicContent, Topics};
 use crate::ReadOptions;
 use poecal_numerics::error::first_few;
 
@@ -14,17 +14,17 @@ const NAMED: usize = 12;
 
 /// The body that was measured.
 #[derive(Clone, Debug)]
-pub(crate) struct Measured<'t> {
+pub(crate) struct MeasuredBody<'t> {
     topic: &'t Topic,
-    bodies: &'t Bodies,
-    pub(crate) body: &'t Body,
+    bodies: &'t TopicBodies,
+    pub(crate) body: &'t TopicBody,
     /// Other bodies, in words.
     left: Vec<String>,
 }
 
-impl Measured<'_> {
+impl MeasuredBody<'_> {
     /// Its table, with times since a whole second.
-    pub(crate) fn table(&self, since_s: i64) -> Made {
+    pub(crate) fn table(&self, since_s: i64) -> MadeTable {
         let mut made = self.body.table(&self.topic.name, self.bodies.are_posed(), since_s);
         if !self.left.is_empty() {
             made.say(format!("left out {}", first_few(&self.left)));
@@ -34,8 +34,8 @@ impl Measured<'_> {
 }
 
 /// The reason why nothing is taken, as an error.
-fn missing<T>(why: String) -> Result<T, Missing> {
-    Err(Missing { why, is_nothing: false })
+fn refuse_missing<T>(why: String) -> Result<T, MissingTable> {
+    Err(MissingTable { why, is_nothing: false })
 }
 
 /// Some candidates, in words.
@@ -44,7 +44,7 @@ fn words<T>(some: &[T], of: impl Fn(&T) -> String) -> String {
 }
 
 /// The candidate bodies in words, with the number of the others.
-fn bodies(some: &[Measured<'_>]) -> String {
+fn bodies(some: &[MeasuredBody<'_>]) -> String {
     let more = match some.len().saturating_sub(NAMED) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -53,12 +53,12 @@ fn bodies(some: &[Measured<'_>]) -> String {
 }
 
 /// The topics with content of a kind, each with its content; if the user asked for topics, only these. An error states that `what` is missing.
-fn wanted<'t, T>(
+fn wanted_topics<'t, T>(
     topics: &'t Topics<'_>,
     options: &ReadOptions,
     what: &str,
-    of: impl Fn(&'t Content) -> Option<&'t T>,
-) -> Result<Vec<(&'t Topic, &'t T)>, Missing> {
+    of: impl Fn(&'t TopicContent) -> Option<&'t T>,
+) -> Result<Vec<(&'t Topic, &'t T)>, MissingTable> {
     let held = topics.all.iter().filter(|it| it.count > 0);
     let mut all: Vec<(&Topic, &T)> = held.filter_map(|it| Some((it, of(&it.content)?))).collect();
     if all.is_empty() {
@@ -66,7 +66,7 @@ fn wanted<'t, T>(
             "found {what} in the bag, expected a topic of it, or another file that has it: it has {}",
             topics.words()
         );
-        return Err(Missing { why, is_nothing: true });
+        return Err(MissingTable { why, is_nothing: true });
     }
     let is_asked = |it: &(&Topic, &T)| options.topics.iter().any(|name| it.0.is_called(name));
     if all.iter().any(is_asked) {
@@ -76,29 +76,30 @@ fn wanted<'t, T>(
 }
 
 /// Refuses a topic with a message that cannot be read.
-fn whole(topic: &Topic) -> Result<(), Missing> {
+fn refuse_unreadable(topic: &Topic) -> Result<(), MissingTable> {
     let Some((number, found)) = &topic.broken else { return Ok(()) };
-    missing(format!("message {number} of `{}`: found {found}, expected {}", topic.name, topic.title))
+    refuse_missing(format!("message {number} of `{}`: found {found}, expected {}", topic.name, topic.title))
 }
 
 /// The joint readings.
 pub(crate) fn joints<'t>(
     topics: &'t Topics<'_>,
     options: &ReadOptions,
-) -> Result<(&'t Topic, &'t Readings), Missing> {
+) -> Result<(&'t Topic, &'t TopicReadings), MissingTable> {
     let what = "no joint readings (sensor_msgs/msg/JointState)";
-    let all = wanted(topics, options, what, Content::readings)?;
-    let having: Vec<_> = all.iter().filter(|it| it.1.held() > 0).copied().collect();
+    let all = wanted_topics(topics, options, what, TopicContent::readings)?;
+    let having: Vec<_> = all.iter().filter(|it| it.1.held_count() > 0).copied().collect();
     match having.as_slice() {
-        [one] => whole(one.0).map(|()| *one),
+        [one] => refuse_unreadable(one.0).map(|()| *one),
         [] => {
-            all.iter().try_for_each(|it| whole(it.0))?;
-            let words = |it: &(&Topic, &Readings)| format!("`{}` with {}", it.0.name, it.1.missing());
+            all.iter().try_for_each(|it| refuse_unreadable(it.0))?;
+            let words =
+                |it: &(&Topic, &TopicReadings)| format!("`{}` with {}", it.0.name, it.1.describe_missing());
             let found: Vec<String> = all.iter().take(NAMED).map(words).collect();
             let expected = "the joints of the robot under their names in the model";
-            missing(format!("found {}, expected {expected}", found.join("; ")))
+            refuse_missing(format!("found {}, expected {expected}", found.join("; ")))
         }
-        several => missing(format!(
+        several => refuse_missing(format!(
             "found {} topics with joint readings of the robot, {}, expected one: name it by --topic",
             several.len(),
             words(several, |it| it.0.words())
@@ -107,48 +108,53 @@ pub(crate) fn joints<'t>(
 }
 
 /// The measured body.
-pub(crate) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Result<Measured<'t>, Missing> {
+pub(crate) fn find_measured<'t>(
+    topics: &'t Topics<'_>,
+    options: &ReadOptions,
+) -> Result<MeasuredBody<'t>, MissingTable> {
     let what = "nothing measured (PoseStamped, PointStamped, TransformStamped or TFMessage)";
-    let all = wanted(topics, options, what, Content::bodies)?;
-    let own = |it: &(&'t Topic, &'t Bodies)| {
+    let all = wanted_topics(topics, options, what, TopicContent::bodies)?;
+    let own = |it: &(&'t Topic, &'t TopicBodies)| {
         let (topic, bodies) = *it;
-        bodies.all.iter().map(move |body| Measured { topic, bodies, body, left: Vec::new() })
+        bodies.all.iter().map(move |body| MeasuredBody { topic, bodies, body, left: Vec::new() })
     };
-    let found: Vec<Measured<'_>> = all.iter().flat_map(own).collect();
+    let found: Vec<MeasuredBody<'_>> = all.iter().flat_map(own).collect();
     let pool = narrow(&found, &all, options)?;
     let moved: Vec<f64> = pool.iter().map(|it| it.body.moved_m()).collect();
-    let moving: Vec<Measured<'_>> =
+    let moving: Vec<MeasuredBody<'_>> =
         pool.iter().zip(which_move(&moved)).filter(|it| it.1).map(|it| it.0.clone()).collect();
     let one = match (moving.as_slice(), pool.as_slice()) {
         ([one], _) | ([], [one]) => one.clone(),
         ([], []) => {
-            all.iter().try_for_each(|it| whole(it.0))?;
-            return missing(format!("found no pose in {}, expected some", topics.words()));
+            all.iter().try_for_each(|it| refuse_unreadable(it.0))?;
+            return refuse_missing(format!("found no pose in {}, expected some", topics.words()));
         }
         ([], _) => {
             let found = bodies(&pool);
-            return missing(format!("found {found} that all stand, expected one that moves with the robot"));
+            return refuse_missing(format!(
+                "found {found} that all stand, expected one that moves with the robot"
+            ));
         }
         (several, _) => return refuse_several(several),
     };
-    whole(one.topic)?;
-    let is_other = |it: &&Measured<'_>| !std::ptr::eq(it.body, one.body);
+    refuse_unreadable(one.topic)?;
+    let is_other = |it: &&MeasuredBody<'_>| !std::ptr::eq(it.body, one.body);
     let left = found.iter().filter(is_other).map(|it| it.body.words(&it.topic.name)).collect();
-    Ok(Measured { left, ..one })
+    Ok(MeasuredBody { left, ..one })
 }
 
 /// Candidates among the measured bodies: the requested frame, or else bodies that are no frames of the robot itself.
 fn narrow<'t>(
-    found: &[Measured<'t>],
-    all: &[(&Topic, &Bodies)],
+    found: &[MeasuredBody<'t>],
+    all: &[(&Topic, &TopicBodies)],
     options: &ReadOptions,
-) -> Result<Vec<Measured<'t>>, Missing> {
+) -> Result<Vec<MeasuredBody<'t>>, MissingTable> {
     let mut pool = found.to_vec();
     let has_names = found.iter().any(|it| !it.body.child.is_empty());
     if let Some(name) = options.body.as_ref().filter(|_| has_names) {
         pool.retain(|it| it.body.child == *name);
         if pool.is_empty() {
-            return missing(format!("found no frame `{name}`, expected one of {}", bodies(found)));
+            return refuse_missing(format!("found no frame `{name}`, expected one of {}", bodies(found)));
         }
     } else if all.iter().any(|it| !it.1.are_frames()) {
         // Transforms are those of the robot's own links, too.
@@ -158,10 +164,10 @@ fn narrow<'t>(
 }
 
 /// Refuses several things that move.
-fn refuse_several<T>(several: &[Measured<'_>]) -> Result<T, Missing> {
+fn refuse_several<T>(several: &[MeasuredBody<'_>]) -> Result<T, MissingTable> {
     let mut lists: Vec<&Topic> = several.iter().map(|it| it.topic).collect();
     lists.dedup_by(|one, other| std::ptr::eq(*one, *other));
-    missing(match lists.as_slice() {
+    refuse_missing(match lists.as_slice() {
         [topic] => format!(
             "found {} frames that move in {}: {}, expected one: name the one on the robot by --body",
             several.len(),

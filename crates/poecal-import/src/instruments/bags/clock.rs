@@ -5,7 +5,7 @@ pub(crate) const SECOND: i64 = 1_000_000_000;
 
 /// Time of a message, nanoseconds.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stamp {
+pub(crate) struct MessageTime {
     /// Time in the message; 0 if it was not set.
     pub(crate) own: i64,
     /// Time of its entry in the bag.
@@ -14,13 +14,13 @@ pub(crate) struct Stamp {
 
 /// Contents of messages, each with its time.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Timed<T>(pub(crate) Vec<(Stamp, T)>);
+pub(crate) struct TimedMessages<T>(pub(crate) Vec<(MessageTime, T)>);
 
-impl<T> Timed<T> {
+impl<T> TimedMessages<T> {
     /// The clock of the messages: that of the log if most of them have no time of their own.
-    pub(crate) fn clock(&self) -> Clock {
+    pub(crate) fn clock(&self) -> MessageClock {
         let unset = self.0.iter().filter(|it| it.0.own == 0).count();
-        Clock { is_log: 2 * unset > self.0.len(), unset }
+        MessageClock { is_log: 2 * unset > self.0.len(), unset }
     }
 
     /// The times of the messages that have one, nanoseconds.
@@ -46,21 +46,21 @@ impl<T> Timed<T> {
 
 /// The clock of some messages.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Clock {
+pub(crate) struct MessageClock {
     is_log: bool,
     /// Number of messages without a time of their own.
     unset: usize,
 }
 
-impl Clock {
+impl MessageClock {
     /// The time of a message, nanoseconds; `None` if it has none.
-    fn time_ns(self, stamp: Stamp) -> Option<i64> {
+    fn time_ns(self, stamp: MessageTime) -> Option<i64> {
         if self.is_log { i64::try_from(stamp.log).ok() } else { Some(stamp.own).filter(|it| *it != 0) }
     }
 
     /// The warning of messages without times of their own.
     pub(crate) fn warning(self, topic: &str) -> Option<String> {
-        let Clock { is_log, unset } = self;
+        let MessageClock { is_log, unset } = self;
         let words = if is_log {
             format!(
                 "took the times of the log, since the stamps of {unset} messages are zero: these are later than what they say by an unknown delay"

@@ -1,8 +1,8 @@
 //! Joint readings of a topic.
 
-use super::super::maker::{Column, Made, Value};
-use super::super::words::quoted;
-use super::clock::{Stamp, Timed};
+use super::super::made_table::{CellValue, MadeTable, TableColumn};
+use super::super::words::quote_names;
+use super::clock::{MessageTime, TimedMessages};
 use super::messages::JointState;
 
 /// Largest number of names that are kept for messages to the user.
@@ -10,10 +10,10 @@ const NAMES_KEPT: usize = 100;
 
 /// The readings of a robot's joints in the messages of a topic.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Readings {
+pub(crate) struct TopicReadings {
     joints: Vec<String>,
     /// The number of each message that has all joints.
-    rows: Timed<usize>,
+    rows: TimedMessages<usize>,
     /// Their readings, one message after the other.
     values: Vec<f64>,
     messages: usize,
@@ -23,10 +23,10 @@ pub(crate) struct Readings {
     names: Vec<String>,
 }
 
-impl Readings {
+impl TopicReadings {
     /// No readings yet, of these joints.
     pub(crate) fn new(joints: &[String]) -> Self {
-        Readings { joints: joints.to_vec(), ..Readings::default() }
+        TopicReadings { joints: joints.to_vec(), ..TopicReadings::default() }
     }
 
     /// Takes a message; a message that lacks a joint holds readings of other joints only.
@@ -41,8 +41,8 @@ impl Readings {
         let is_whole = own.len() == self.joints.len();
         let is_finite = own.iter().all(|it| it.is_finite());
         if is_whole && is_finite {
-            self.rows.0.push((Stamp { own: message.stamp_ns, log: log_ns }, self.messages));
-            if self.held() > 1 {
+            self.rows.0.push((MessageTime { own: message.stamp_ns, log: log_ns }, self.messages));
+            if self.held_count() > 1 {
                 return;
             }
         } else {
@@ -57,18 +57,18 @@ impl Readings {
     }
 
     /// Number of readings that are held.
-    pub(crate) fn held(&self) -> usize {
+    pub(crate) fn held_count(&self) -> usize {
         self.rows.0.len()
     }
 
     /// The missing joints, in words.
-    pub(crate) fn missing(&self) -> String {
-        let missing = quoted(self.joints.iter().filter(|it| !self.names.contains(it)));
+    pub(crate) fn describe_missing(&self) -> String {
+        let missing = quote_names(self.joints.iter().filter(|it| !self.names.contains(it)));
         match (missing.is_empty(), self.names.is_empty()) {
             (_, true) => "messages without joints".to_owned(),
             (true, _) if self.infinite > 0 => "readings that are no numbers".to_owned(),
             (true, _) => "no message with all joints of the robot at once".to_owned(),
-            (false, false) => format!("the joints {}, and not {missing}", quoted(&self.names)),
+            (false, false) => format!("the joints {}, and not {missing}", quote_names(&self.names)),
         }
     }
 
@@ -78,18 +78,24 @@ impl Readings {
     }
 
     /// The table with these columns, and times since a whole second.
-    pub(crate) fn table(&self, topic: &str, columns: impl Iterator<Item = Column>, since_s: i64) -> Made {
+    pub(crate) fn table(
+        &self,
+        topic: &str,
+        columns: impl Iterator<Item = TableColumn>,
+        since_s: i64,
+    ) -> MadeTable {
         let columns = columns.zip(&self.joints);
         let columns =
             columns.map(|(column, joint)| column.made_of(|_| format!("position of `{joint}` in {topic}")));
-        let mut made = Made::new(1, std::iter::once(Column::from("time").in_unit("s")).chain(columns));
+        let mut made =
+            MadeTable::new(1, std::iter::once(TableColumn::from("time").in_unit("s")).chain(columns));
         let width = self.joints.len();
         for (time, at, number) in self.rows.sorted(since_s) {
             let values = self.values.get(at * width..(at + 1) * width).unwrap_or_default();
-            made.row(*number, std::iter::once(&time).chain(values).copied().map(Value::Number));
+            made.row(*number, std::iter::once(&time).chain(values).copied().map(CellValue::Number));
         }
         made.say(format!("{} joint readings of `{topic}`, rad and m; lines are its messages", made.rows()));
-        let others = self.messages - self.held() - self.infinite;
+        let others = self.messages - self.held_count() - self.infinite;
         if others > 0 {
             made.say(format!("left out {others} messages of other joints"));
         }

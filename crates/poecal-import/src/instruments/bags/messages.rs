@@ -1,10 +1,10 @@
 //! Messages of ROS 2 that hold joint readings or poses.
 
-use super::cdr::Cdr;
+use super::cdr::CdrReader;
 
 /// Kind of content of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum MessageKind {
     Joints,
     Pose,
     Point,
@@ -13,15 +13,15 @@ pub(crate) enum Kind {
 }
 
 /// Types of messages that are read.
-const TYPES: [(&str, Kind); 5] = [
-    ("sensor_msgs/msg/JointState", Kind::Joints),
-    ("geometry_msgs/msg/PoseStamped", Kind::Pose),
-    ("geometry_msgs/msg/PointStamped", Kind::Point),
-    ("geometry_msgs/msg/TransformStamped", Kind::Transform),
-    ("tf2_msgs/msg/TFMessage", Kind::Transforms),
+const TYPES: [(&str, MessageKind); 5] = [
+    ("sensor_msgs/msg/JointState", MessageKind::Joints),
+    ("geometry_msgs/msg/PoseStamped", MessageKind::Pose),
+    ("geometry_msgs/msg/PointStamped", MessageKind::Point),
+    ("geometry_msgs/msg/TransformStamped", MessageKind::Transform),
+    ("tf2_msgs/msg/TFMessage", MessageKind::Transforms),
 ];
 
-impl Kind {
+impl MessageKind {
     /// The kind by the name of a type.
     pub(crate) fn from_type_name(name: &str) -> Option<Self> {
         let is_same = |known: &str| known == name || known.replace("/msg/", "/") == name;
@@ -30,7 +30,7 @@ impl Kind {
 
     /// True if such a message has an orientation.
     pub(crate) fn is_posed(self) -> bool {
-        self != Kind::Point
+        self != MessageKind::Point
     }
 }
 
@@ -45,7 +45,7 @@ pub(crate) struct JointState<'m> {
 
 /// Pose of a body in a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pose<'m> {
+pub(crate) struct PoseField<'m> {
     /// Time, nanoseconds; 0 if it was not set.
     pub(crate) stamp_ns: i64,
     /// The frame in which the pose is expressed.
@@ -58,14 +58,14 @@ pub(crate) struct Pose<'m> {
 }
 
 /// Time and frame of a message.
-fn head<'m>(cdr: &mut Cdr<'m>) -> Result<(i64, &'m str), String> {
+fn head<'m>(cdr: &mut CdrReader<'m>) -> Result<(i64, &'m str), String> {
     let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
     Ok((i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds), cdr.text()?))
 }
 
 /// The readings of a message.
 pub(crate) fn joint_state(message: &[u8]) -> Result<JointState<'_>, String> {
-    let mut cdr = Cdr::new(message)?;
+    let mut cdr = CdrReader::new(message)?;
     let (stamp_ns, _) = head(&mut cdr)?;
     let (names, positions) = (cdr.texts()?, cdr.numbers()?);
     // Velocities and efforts follow.
@@ -78,18 +78,18 @@ pub(crate) fn joint_state(message: &[u8]) -> Result<JointState<'_>, String> {
 }
 
 /// The poses of a message of this kind.
-pub(crate) fn poses(kind: Kind, message: &[u8]) -> Result<Vec<Pose<'_>>, String> {
+pub(crate) fn poses(kind: MessageKind, message: &[u8]) -> Result<Vec<PoseField<'_>>, String> {
     /// Least bytes of a transform.
     const TRANSFORM: usize = 72;
-    let mut cdr = Cdr::new(message)?;
-    let count = if kind == Kind::Transforms { cdr.count(TRANSFORM)? } else { 1 };
+    let mut cdr = CdrReader::new(message)?;
+    let count = if kind == MessageKind::Transforms { cdr.count(TRANSFORM)? } else { 1 };
     let mut one = || {
         let (stamp_ns, parent) = head(&mut cdr)?;
-        let is_named = matches!(kind, Kind::Transform | Kind::Transforms);
+        let is_named = matches!(kind, MessageKind::Transform | MessageKind::Transforms);
         let child = if is_named { cdr.text()? } else { "" };
         let position = cdr.array()?;
         let quaternion = if kind.is_posed() { cdr.array()? } else { [0.0; 4] };
-        Ok(Pose { stamp_ns, parent, child, position, quaternion })
+        Ok(PoseField { stamp_ns, parent, child, position, quaternion })
     };
     (0..count).map(|_| one()).collect()
 }
@@ -176,7 +176,7 @@ pub(crate) mod tests {
         assert_eq!((read.stamp_ns, read.names), (3_000_000_005, vec!["gripper", "a"]));
         assert_eq!(read.positions, [0.5, -1.0]);
         let numbers = [1.0, 2.0, 3.0, 0.0, 0.0, 0.6, 0.8];
-        for kind in [Kind::Pose, Kind::Point] {
+        for kind in [MessageKind::Pose, MessageKind::Point] {
             let written = Writer::pose(7, &numbers);
             let read = poses(kind, &written).unwrap();
             let one = read.first().unwrap();
@@ -184,18 +184,18 @@ pub(crate) mod tests {
             assert_eq!(one.quaternion == [0.0, 0.0, 0.6, 0.8], kind.is_posed());
         }
         let written = Writer::transforms(9, &[("tool", numbers), ("base", [0.0; 7])]);
-        let read = poses(Kind::Transforms, &written).unwrap();
+        let read = poses(MessageKind::Transforms, &written).unwrap();
         assert_eq!(read.iter().map(|it| it.child).collect::<Vec<_>>(), ["tool", "base"]);
         assert_eq!(read.first().unwrap().quaternion, [0.0, 0.0, 0.6, 0.8]);
         for size in 0..written.len() {
-            assert!(poses(Kind::Transforms, &written[..size]).is_err(), "{size}");
+            assert!(poses(MessageKind::Transforms, &written[..size]).is_err(), "{size}");
         }
     }
 
     #[test]
     fn types_are_known_in_either_form() {
-        assert_eq!(Kind::from_type_name("sensor_msgs/msg/JointState"), Some(Kind::Joints));
-        assert_eq!(Kind::from_type_name("geometry_msgs/PoseStamped"), Some(Kind::Pose));
-        assert_eq!(Kind::from_type_name("std_msgs/msg/String"), None);
+        assert_eq!(MessageKind::from_type_name("sensor_msgs/msg/JointState"), Some(MessageKind::Joints));
+        assert_eq!(MessageKind::from_type_name("geometry_msgs/PoseStamped"), Some(MessageKind::Pose));
+        assert_eq!(MessageKind::from_type_name("std_msgs/msg/String"), None);
     }
 }

@@ -11,8 +11,8 @@ use crate::{MeasurementFile, ReadOptions, read};
 use poecal_arm::lie::rotation;
 use poecal_model::robot::Robot;
 use poecal_model::simulate::elbow;
-use poecal_storage::containers::mcap::{self, MAGIC, Records as _, op};
-use poecal_storage::limits::{self, Limit};
+use poecal_storage::containers::mcap::{self, MAGIC, RecordSink as _, op};
+use poecal_storage::limits::{self, ResourceLimit};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 
 const JOINTS: &str = "sensor_msgs/msg/JointState";
@@ -270,7 +270,7 @@ fn bags_that_rosbag2_compressed_by_message_or_by_file_are_the_same_rows() {
     let large = bag(&[("/joint_states", JOINTS, FIRST_NS, zeros)]);
     assert!(large.len() < 20_000, "{}", large.len());
     let large = folder.write("large.mcap", large);
-    limits::on(limits::here().with(Limit::Bag, 100_000), || {
+    limits::run_with_limits(limits::current_limits().with_limit(ResourceLimit::Bag, 100_000), || {
         let error = read_all(&[&large], &options).unwrap_err();
         assert!(error.contains("the messages of a bag") && error.contains("limit"), "{error}");
     });
@@ -447,12 +447,13 @@ fn a_bag_beyond_a_limit_is_refused_by_its_name() {
     let (robot, folder) = (elbow(), Folder::new("limits"));
     let path = folder.write("a.mcap", bag(&session(&robot)));
     for (limit, most, part) in [
-        (Limit::Bag, 1000, "it is larger than 1,000 bytes"),
-        (Limit::Topics, 1, "found more than 1 topics in a bag"),
-        (Limit::Poses, 10, "found more than 10 poses in the messages of a bag"),
+        (ResourceLimit::Bag, 1000, "it is larger than 1,000 bytes"),
+        (ResourceLimit::Topics, 1, "found more than 1 topics in a bag"),
+        (ResourceLimit::Poses, 10, "found more than 10 poses in the messages of a bag"),
     ] {
-        let limits = limits::here().with(limit, most);
-        let error = limits::on(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
+        let limits = limits::current_limits().with_limit(limit, most);
+        let error =
+            limits::run_with_limits(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
         assert!(
             error.contains(part) && error.contains(&format!("--limit {}=N", limit.row().name)),
             "{error}"
@@ -462,12 +463,12 @@ fn a_bag_beyond_a_limit_is_refused_by_its_name() {
     let whole = bag(&session(&robot));
     let parts = folder.0.join("parts");
     (0..2).for_each(|at| drop(folder.write(&format!("parts/b_{at}.mcap"), &whole)));
-    let limits = limits::here().with(Limit::Bag, whole.len() as u64);
-    let error = limits::on(limits, || read_all(&[&parts], &ReadOptions::default())).unwrap_err();
+    let limits = limits::current_limits().with_limit(ResourceLimit::Bag, whole.len() as u64);
+    let error = limits::run_with_limits(limits, || read_all(&[&parts], &ReadOptions::default())).unwrap_err();
     assert!(error.contains("found a bag that states") && error.contains("--limit bag=N"), "{error}");
     // A chunk beyond the limit is left out like a damaged one.
-    let limits = limits::here().with(Limit::Chunk, 100);
-    let error = limits::on(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
+    let limits = limits::current_limits().with_limit(ResourceLimit::Chunk, 100);
+    let error = limits::run_with_limits(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
     assert!(error.contains("(limit `chunk`)"), "{error}");
 }
 

@@ -2,39 +2,39 @@
 
 use std::collections::HashMap;
 
-use super::bodies::Bodies;
-use super::joints::Readings;
-use super::messages::{Kind, joint_state, poses};
-use poecal_numerics::error::shown;
-use poecal_storage::containers::mcap::Records;
+use super::bodies::TopicBodies;
+use super::joints::TopicReadings;
+use super::messages::{MessageKind, joint_state, poses};
+use poecal_numerics::error::shorten_name;
+use poecal_storage::containers::mcap::RecordSink;
 use poecal_storage::containers::unpack;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
 /// Largest number of topics in a list.
 const LISTED: usize = 30;
 
 /// Contents of the messages of a topic, as far as they are read.
 #[derive(Clone, Debug, Default)]
-pub(crate) enum Content {
-    Joints(Readings),
-    Bodies(Bodies),
+pub(crate) enum TopicContent {
+    Joints(TopicReadings),
+    Bodies(TopicBodies),
     /// Messages of another type.
     #[default]
     Other,
 }
 
-impl Content {
-    pub(crate) fn readings(&self) -> Option<&Readings> {
-        if let Content::Joints(readings) = self { Some(readings) } else { None }
+impl TopicContent {
+    pub(crate) fn readings(&self) -> Option<&TopicReadings> {
+        if let TopicContent::Joints(readings) = self { Some(readings) } else { None }
     }
 
-    pub(crate) fn bodies(&self) -> Option<&Bodies> {
-        if let Content::Bodies(bodies) = self { Some(bodies) } else { None }
+    pub(crate) fn bodies(&self) -> Option<&TopicBodies> {
+        if let TopicContent::Bodies(bodies) = self { Some(bodies) } else { None }
     }
 
     /// Number of readings or poses that are held.
-    fn held(&self) -> usize {
-        self.readings().map_or(0, Readings::held) + self.bodies().map_or(0, |it| it.held)
+    fn held_count(&self) -> usize {
+        self.readings().map_or(0, TopicReadings::held_count) + self.bodies().map_or(0, |it| it.held)
     }
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct Topic {
     pub(crate) count: u64,
     /// Times of its first and last message in the log, nanoseconds.
     span_ns: (u64, u64),
-    pub(crate) content: Content,
+    pub(crate) content: TopicContent,
     /// The first message that cannot be read: its number and what was found.
     pub(crate) broken: Option<(u64, String)>,
 }
@@ -63,7 +63,12 @@ impl Topic {
     pub(crate) fn words(&self) -> String {
         let messages = if self.count == 1 { "message" } else { "messages" };
         let rate = self.rate().map_or(String::new(), |rate| format!(", {rate:.1} Hz"));
-        format!("`{}` ({}, {} {messages}{rate})", shown(&self.name), shown(&self.title), self.count)
+        format!(
+            "`{}` ({}, {} {messages}{rate})",
+            shorten_name(&self.name),
+            shorten_name(&self.title),
+            self.count
+        )
     }
 
     /// True if this is its name, with or without the leading slash.
@@ -73,7 +78,7 @@ impl Topic {
 
     /// True if it has messages of a type that is read.
     pub(crate) fn is_read(&self) -> bool {
-        self.count > 0 && !matches!(self.content, Content::Other)
+        self.count > 0 && !matches!(self.content, TopicContent::Other)
     }
 
     /// True if its messages name the bodies that they are about.
@@ -90,11 +95,11 @@ impl Topic {
         self.count += 1;
         let taken = match &mut self.content {
             _ if self.broken.is_some() => return,
-            Content::Joints(readings) => joint_state(message).map(|it| readings.take(&it, log_ns)),
-            Content::Bodies(bodies) => {
+            TopicContent::Joints(readings) => joint_state(message).map(|it| readings.take(&it, log_ns)),
+            TopicContent::Bodies(bodies) => {
                 poses(bodies.kind, message).map(|all| all.iter().for_each(|it| bodies.take(it, log_ns)))
             }
-            Content::Other => Ok(()),
+            TopicContent::Other => Ok(()),
         };
         if let Err(found) = taken {
             self.broken = Some((self.count, found));
@@ -156,7 +161,7 @@ impl<'a> Topics<'a> {
     }
 }
 
-impl Records for Topics<'_> {
+impl RecordSink for Topics<'_> {
     fn schema(&mut self, id: u16, name: &str) {
         self.schemas.insert(id, name.to_owned());
     }
@@ -167,16 +172,16 @@ impl Records for Topics<'_> {
         let title = if is_cdr { of.to_owned() } else { format!("{of} in {encoding}") };
         let key = (name.to_owned(), title.clone());
         let known = self.places.get(&key).copied();
-        if known.is_none() && self.all.len() >= Limit::Topics.most_held() {
-            self.refused = Some(Limit::Topics.exceeded("a bag"));
+        if known.is_none() && self.all.len() >= ResourceLimit::Topics.most_held() {
+            self.refused = Some(ResourceLimit::Topics.exceeded_error("a bag"));
             return;
         }
         let at = known.unwrap_or_else(|| {
             self.places.insert(key, self.all.len());
-            let content = match Kind::from_type_name(of).filter(|_| is_cdr) {
-                Some(Kind::Joints) => Content::Joints(Readings::new(self.joints)),
-                Some(kind) => Content::Bodies(Bodies::new(kind)),
-                None => Content::Other,
+            let content = match MessageKind::from_type_name(of).filter(|_| is_cdr) {
+                Some(MessageKind::Joints) => TopicContent::Joints(TopicReadings::new(self.joints)),
+                Some(kind) => TopicContent::Bodies(TopicBodies::new(kind)),
+                None => TopicContent::Other,
             };
             self.all.push(Topic { name: name.to_owned(), title, content, ..Topic::default() });
             self.all.len() - 1
@@ -189,31 +194,31 @@ impl Records for Topics<'_> {
         self.span_ns = Some((first.min(log_ns), last.max(log_ns)));
         match self.channels.get(&channel).and_then(|at| self.all.get_mut(*at)) {
             Some(topic) => {
-                let before = topic.content.held();
+                let before = topic.content.held_count();
                 let mut whole = Vec::new();
                 // Compressed by rosbag2 one by one.
-                if message.starts_with(unpack::ZSTD) && !matches!(topic.content, Content::Other) {
-                    let left = Limit::Bag.most().saturating_sub(self.unpacked);
-                    let most = left.min(Limit::Chunk.most().saturating_add(1));
+                if message.starts_with(unpack::ZSTD) && !matches!(topic.content, TopicContent::Other) {
+                    let left = ResourceLimit::Bag.value().saturating_sub(self.unpacked);
+                    let most = left.min(ResourceLimit::Chunk.value().saturating_add(1));
                     match unpack::message(message, most, &mut whole) {
-                        _ if whole.len() as u64 > Limit::Chunk.most() => {
-                            self.refused = Some(Limit::Chunk.exceeded("a message of a bag"));
+                        _ if whole.len() as u64 > ResourceLimit::Chunk.value() => {
+                            self.refused = Some(ResourceLimit::Chunk.exceeded_error("a message of a bag"));
                         }
                         Ok(()) => topic.take(log_ns, &whole),
                         Err(found) => self.damaged.get_or_insert((0, found)).0 += 1,
                     }
                     self.unpacked += whole.len() as u64;
                     if whole.len() as u64 >= left {
-                        self.refused = Some(Limit::Bag.exceeded("the messages of a bag"));
+                        self.refused = Some(ResourceLimit::Bag.exceeded_error("the messages of a bag"));
                     }
                 } else {
                     topic.take(log_ns, message);
                 }
-                self.held += topic.content.held() - before;
-                if topic.content.bodies().map_or(0, |it| it.all.len()) > Limit::Topics.most_held() {
-                    self.refused = Some(Limit::Topics.exceeded("one topic"));
-                } else if self.held > Limit::Poses.most_held() {
-                    self.refused = Some(Limit::Poses.exceeded("the messages of a bag"));
+                self.held += topic.content.held_count() - before;
+                if topic.content.bodies().map_or(0, |it| it.all.len()) > ResourceLimit::Topics.most_held() {
+                    self.refused = Some(ResourceLimit::Topics.exceeded_error("one topic"));
+                } else if self.held > ResourceLimit::Poses.most_held() {
+                    self.refused = Some(ResourceLimit::Poses.exceeded_error("the messages of a bag"));
                 }
             }
             None => self.unknown += 1,

@@ -6,7 +6,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
-use poecal_storage::limits::{Limit, amount};
+use poecal_storage::limits::{ResourceLimit, amount};
 
 /// The part that names the sheets of a binary workbook (.xlsb), whose reader does not check lengths.
 const BINARY: &str = "xl/workbook.bin";
@@ -21,18 +21,18 @@ const READ_AGAIN: u64 = 4;
 
 /// Sizes of an archive's parts, bytes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Parts {
+pub(crate) struct ArchiveParts {
     largest: u64,
 }
 
-impl Parts {
+impl ArchiveParts {
     /// Unpacks all parts without holding them.
     ///
     /// Errors are a binary workbook, and the sentence of the limit that is exceeded. An archive that cannot be read is not an error here.
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
-        let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(Parts::default()) };
-        let most = Limit::Unpacked.most();
-        let (mut sum, mut parts) = (0_u64, Parts::default());
+        let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(ArchiveParts::default()) };
+        let most = ResourceLimit::Unpacked.value();
+        let (mut sum, mut parts) = (0_u64, ArchiveParts::default());
         for at in 0..archive.len() {
             let Ok(part) = archive.by_index(at) else { continue };
             if part.name().eq_ignore_ascii_case(BINARY) {
@@ -42,14 +42,14 @@ impl Parts {
                 );
             }
             let is_content = part.name() == CONTENT;
-            let mut counted = Counted { inner: part.take(most - sum + 1), count: 0 };
+            let mut counted = CountedReader { inner: part.take(most - sum + 1), count: 0 };
             let cells = if is_content { cells_of_ods(&mut counted) } else { Ok(()) };
             // A reader that needs a damaged part reports it.
             let _ = io::copy(&mut counted, &mut io::sink());
             sum += counted.count;
             parts.largest = parts.largest.max(counted.count);
             if sum > most {
-                return Err(Limit::Unpacked.exceeded("the parts of this workbook"));
+                return Err(ResourceLimit::Unpacked.exceeded_error("the parts of this workbook"));
             }
             cells?;
         }
@@ -59,21 +59,21 @@ impl Parts {
     /// Refuses a number of sheets whose reading would take too long.
     pub(crate) fn refuse_sheets(self, count: usize) -> Result<(), String> {
         let read = self.largest.saturating_mul(count as u64);
-        if read <= Limit::Unpacked.most().saturating_mul(READ_AGAIN) {
+        if read <= ResourceLimit::Unpacked.value().saturating_mul(READ_AGAIN) {
             return Ok(());
         }
-        let size = amount(self.largest, Limit::Unpacked.row().unit);
-        Err(Limit::Unpacked.sentence(&format!("{count} sheets, and a part of {size}")))
+        let size = amount(self.largest, ResourceLimit::Unpacked.row().unit);
+        Err(ResourceLimit::Unpacked.sentence(&format!("{count} sheets, and a part of {size}")))
     }
 }
 
 /// A reader that counts its bytes.
-struct Counted<R> {
+struct CountedReader<R> {
     inner: R,
     count: u64,
 }
 
-impl<R: Read> Read for Counted<R> {
+impl<R: Read> Read for CountedReader<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(into)?;
         self.count += count as u64;
@@ -83,7 +83,7 @@ impl<R: Read> Read for Counted<R> {
 
 /// A sheet of .ods while it is read.
 #[derive(Default)]
-struct Sheet {
+struct OdsSheet {
     /// Rows up to the last one with a cell, and empty ones behind it.
     rows: u64,
     empty_rows: u64,
@@ -100,7 +100,7 @@ struct Sheet {
     of_row: u64,
 }
 
-impl Sheet {
+impl OdsSheet {
     fn begin_row(&mut self, repeated: u64) {
         (self.columns, self.empty_columns, self.repeated) = (0, 0, repeated);
         (self.of_cell, self.of_row) = (0, 0);
@@ -142,25 +142,25 @@ fn cells_of_ods(content: impl Read) -> Result<(), String> {
     let mut reader = Reader::from_reader(BufReader::new(content));
     reader.config_mut().check_end_names = false;
     let (mut buffer, mut before, mut texts) = (Vec::new(), 0_u64, 0_u64);
-    let (mut sheet, mut again) = (Sheet::default(), 1);
+    let (mut sheet, mut again) = (OdsSheet::default(), 1);
     // The reader of the workbook refuses text that is no XML.
     while let Ok(event) = reader.read_event_into(&mut buffer) {
         match event {
             Event::Eof => break,
             Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == b"text:s" => {
-                sheet.of_cell = sheet.of_cell.saturating_add(repeated(&tag, b"text:c"));
+                sheet.of_cell = sheet.of_cell.saturating_add(repetition_count(&tag, b"text:c"));
             }
             Event::Text(text) => sheet.of_cell = sheet.of_cell.saturating_add(text.len() as u64),
             Event::Start(tag) if tag.name().as_ref() == b"table:table-row" => {
-                sheet.begin_row(repeated(&tag, b"table:number-rows-repeated"));
+                sheet.begin_row(repetition_count(&tag, b"table:number-rows-repeated"));
             }
             Event::Start(tag) if is_cell(tag.name().as_ref()) => {
-                again = repeated(&tag, b"table:number-columns-repeated");
+                again = repetition_count(&tag, b"table:number-columns-repeated");
                 sheet.cell(again, false);
                 sheet.of_cell = tag.len() as u64;
             }
             Event::Empty(tag) if is_cell(tag.name().as_ref()) => {
-                let again = repeated(&tag, b"table:number-columns-repeated");
+                let again = repetition_count(&tag, b"table:number-columns-repeated");
                 sheet.cell(again, is_empty(&tag));
                 sheet.of_cell = if is_empty(&tag) { 0 } else { tag.len() as u64 };
                 sheet.end_cell(again.min(MOST_COLUMNS));
@@ -172,7 +172,7 @@ fn cells_of_ods(content: impl Read) -> Result<(), String> {
             }
             Event::End(tag) if tag.name().as_ref() == b"table:table" => {
                 before = before.saturating_add(sheet.cells());
-                sheet = Sheet::default();
+                sheet = OdsSheet::default();
             }
             Event::Start(_)
             | Event::End(_)
@@ -185,13 +185,13 @@ fn cells_of_ods(content: impl Read) -> Result<(), String> {
             | Event::GeneralRef(_) => {}
         }
         let cells = before.saturating_add(sheet.cells());
-        if cells > Limit::Cells.most() {
-            return Err(Limit::Cells.exceeded("the sheets of this workbook"));
+        if cells > ResourceLimit::Cells.value() {
+            return Err(ResourceLimit::Cells.exceeded_error("the sheets of this workbook"));
         }
         if texts.saturating_add(sheet.of_row).saturating_add(sheet.of_cell)
-            > MOST_TEXT * Limit::Unpacked.most()
+            > MOST_TEXT * ResourceLimit::Unpacked.value()
         {
-            return Err(Limit::Unpacked.exceeded("the texts of the cells"));
+            return Err(ResourceLimit::Unpacked.exceeded_error("the texts of the cells"));
         }
         buffer.clear();
     }
@@ -211,7 +211,7 @@ fn is_empty(tag: &BytesStart<'_>) -> bool {
 }
 
 /// The number of repetitions; 1 if it is not stated as a number.
-fn repeated(tag: &BytesStart<'_>, name: &[u8]) -> u64 {
+fn repetition_count(tag: &BytesStart<'_>, name: &[u8]) -> u64 {
     let stated = tag.attributes().flatten().find(|it| it.key.as_ref() == name);
     let digits = stated.and_then(|it| {
         let text = String::from_utf8_lossy(&it.value).into_owned();
@@ -225,18 +225,20 @@ mod tests {
     use super::*;
     use poecal_storage::limits;
 
-    fn refused(most: u64, rows: &str) -> Option<String> {
+    fn refuse_rows(most: u64, rows: &str) -> Option<String> {
         let content = format!(
             "<office:spreadsheet><table:table table:name='A'>{rows}</table:table></office:spreadsheet>"
         );
-        limits::on(limits::here().with(Limit::Cells, most), || cells_of_ods(content.as_bytes()).err())
+        limits::run_with_limits(limits::current_limits().with_limit(ResourceLimit::Cells, most), || {
+            cells_of_ods(content.as_bytes()).err()
+        })
     }
 
     #[test]
     fn a_binary_workbook_is_refused_by_name() {
         let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
         archive.start_file(BINARY, zip::write::SimpleFileOptions::default()).unwrap();
-        let error = Parts::from_bytes(&archive.finish().unwrap().into_inner()).unwrap_err();
+        let error = ArchiveParts::from_bytes(&archive.finish().unwrap().into_inner()).unwrap_err();
         assert!(error.starts_with("found a binary workbook (.xlsb)"), "{error}");
     }
 
@@ -251,15 +253,15 @@ mod tests {
         let value = " office:value='1'";
         // Empty cells behind the last cell and the last row, as every program writes them, do not count.
         let plain = row(3, &(cell(2, value) + &cell(16_000, ""))) + &row(1_048_000, &cell(16_384, ""));
-        assert_eq!(refused(6, &plain), None);
-        assert!(refused(5, &plain).is_some_and(|it| it.contains("limit `cells`")));
+        assert_eq!(refuse_rows(6, &plain), None);
+        assert!(refuse_rows(5, &plain).is_some_and(|it| it.contains("limit `cells`")));
         // Empty cells before a distant cell count.
         let far = row(1, &cell(1, value)) + &row(999_998, &cell(1, "")) + &row(1, &cell(1, value));
-        assert_eq!(refused(1_000_000, &far), None);
-        assert!(refused(999_999, &far).is_some());
+        assert_eq!(refuse_rows(1_000_000, &far), None);
+        assert!(refuse_rows(999_999, &far).is_some());
         let right = row(1, &(cell(9_999, "") + &cell(1, value)));
-        assert!(refused(10_000, &right).is_none() && refused(9_999, &right).is_some());
+        assert!(refuse_rows(10_000, &right).is_none() && refuse_rows(9_999, &right).is_some());
         // No number overflows.
-        assert!(refused(1000, &row(u64::MAX, &cell(u64::MAX, value))).is_some());
+        assert!(refuse_rows(1000, &row(u64::MAX, &cell(u64::MAX, value))).is_some());
     }
 }

@@ -6,36 +6,36 @@ use std::io::Cursor;
 
 use calamine::{Cell, Data, Range, Reader as _, Sheets};
 
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 
 /// A workbook of bytes.
-pub(crate) type Book<'b> = Sheets<Cursor<&'b [u8]>>;
+pub(crate) type WorkbookBytes<'b> = Sheets<Cursor<&'b [u8]>>;
 
 /// Remaining budget of the sheets of a workbook.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Left {
+pub(crate) struct RemainingAllowance {
     /// Cells of their ranges.
     cells: u64,
     /// Bytes of their texts, each as often as a cell has it.
     texts: u64,
 }
 
-impl Left {
+impl RemainingAllowance {
     /// The budget of a whole workbook.
     pub(crate) fn of_workbook() -> Self {
-        Left { cells: Limit::Cells.most(), texts: Limit::Unpacked.most() }
+        RemainingAllowance { cells: ResourceLimit::Cells.value(), texts: ResourceLimit::Unpacked.value() }
     }
 }
 
 /// The cells of one sheet and their extent.
 #[derive(Default)]
-pub(crate) struct Found {
+pub(crate) struct SheetCells {
     cells: Vec<Cell<Data>>,
     /// First and last row and column.
     extent: Option<[u32; 4]>,
 }
 
-impl Found {
+impl SheetCells {
     /// Takes a cell, unless the range or the texts then exceed the remaining budget.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl Found {
         &mut self,
         (row, column): (u32, u32),
         value: Data,
-        left: &mut Left,
+        left: &mut RemainingAllowance,
     ) -> Result<(), String> {
         if matches!(value, Data::Empty) {
             return Ok(());
@@ -56,11 +56,14 @@ impl Found {
         if self.area() > left.cells || self.cells.len() as u64 >= left.cells {
             let [top, bottom, first, last] = extent.map(u64::from);
             let (rows, columns) = (bottom - top + 1, last - first + 1);
-            return Err(Limit::Cells.sentence(&format!("a sheet of {rows} rows and {columns} columns")));
+            return Err(
+                ResourceLimit::Cells.sentence(&format!("a sheet of {rows} rows and {columns} columns"))
+            );
         }
         if let Data::String(text) = &value {
             let rest = left.texts.checked_sub(text.len() as u64);
-            left.texts = rest.ok_or_else(|| Limit::Unpacked.exceeded("the texts of the cells"))?;
+            left.texts =
+                rest.ok_or_else(|| ResourceLimit::Unpacked.exceeded_error("the texts of the cells"))?;
         }
         self.cells.push(Cell::new((row, column), value));
         Ok(())
@@ -73,7 +76,7 @@ impl Found {
     }
 
     /// The range; its cells are taken from the budget.
-    pub(crate) fn range(self, left: &mut Left) -> Range<Data> {
+    pub(crate) fn range(self, left: &mut RemainingAllowance) -> Range<Data> {
         left.cells = left.cells.saturating_sub(self.area());
         Range::from_sparse(self.cells)
     }
@@ -83,7 +86,7 @@ impl Found {
 pub(crate) type ReadSheet = (String, Range<Data>);
 
 /// The message on a damaged sheet.
-pub(crate) fn broken(name: &str, error: &dyn Display) -> String {
+pub(crate) fn damage_message(name: &str, error: &dyn Display) -> String {
     format!("the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again")
 }
 
@@ -91,9 +94,13 @@ pub(crate) fn broken(name: &str, error: &dyn Display) -> String {
 ///
 /// # Errors
 /// The defect, in a sentence.
-pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<Range<Data>, String> {
-    let broken = |error: &dyn Display| broken(name, error);
-    let mut found = Found::default();
+pub(crate) fn range(
+    book: &mut WorkbookBytes<'_>,
+    name: &str,
+    left: &mut RemainingAllowance,
+) -> Result<Range<Data>, String> {
+    let broken = |error: &dyn Display| damage_message(name, error);
+    let mut found = SheetCells::default();
     match book {
         Sheets::Xlsx(book) => {
             let mut reader = match book.worksheet_cells_reader(name) {
@@ -118,7 +125,7 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
 pub(crate) type Formulas = BTreeMap<(u32, u32), String>;
 
 /// Formulas of a sheet within a range, by row and column; empty if the form of workbook has formulas that cannot be read.
-pub(crate) fn formulas(book: &mut Book<'_>, name: &str, within: &Range<Data>) -> Formulas {
+pub(crate) fn formulas(book: &mut WorkbookBytes<'_>, name: &str, within: &Range<Data>) -> Formulas {
     let mut found = Formulas::new();
     let (Some(start), Some(end)) = (within.start(), within.end()) else { return found };
     let mut take = |(row, column): (u32, u32), text: &String| {
@@ -153,8 +160,8 @@ mod tests {
 
     #[test]
     fn an_extent_is_held_up_to_its_limit() {
-        let mut left = Left { cells: 6, texts: 5 };
-        let mut found = Found::default();
+        let mut left = RemainingAllowance { cells: 6, texts: 5 };
+        let mut found = SheetCells::default();
         assert_eq!(found.area(), 0);
         for place in [(1, 1), (2, 3), (2, 3)] {
             found.add(place, Data::Int(1), &mut left).unwrap();
@@ -166,10 +173,10 @@ mod tests {
             error.starts_with("found a sheet of 1048575 rows and 3 columns, expected at most"),
             "{error}"
         );
-        let mut same = Found::default();
+        let mut same = SheetCells::default();
         assert!((0..7).map(|_| same.add((0, 0), Data::Int(1), &mut left)).any(|it| it.is_err()));
         let text = || Data::String("abc".to_owned());
-        let mut texts = Found::default();
+        let mut texts = SheetCells::default();
         texts.add((0, 0), text(), &mut left).unwrap();
         assert!(texts.add((0, 1), text(), &mut left).is_err());
         texts.range(&mut left);

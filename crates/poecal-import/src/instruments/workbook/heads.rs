@@ -3,8 +3,8 @@
 use calamine::Data;
 
 use super::super::workbook_cells::{is_empty, text, value};
-use crate::table::header_cells::bracketed;
-use crate::table::roles::{plain, unit_of};
+use crate::table::header_cells::split_brackets;
+use crate::table::roles::{plain_letters, unit_of};
 
 /// Number of rows in which the header is sought.
 const FIRST: usize = 60;
@@ -15,7 +15,7 @@ const SUMS: &str = "average avg mean meanvalue max min maximum minimum std stdev
                     variance var count sigma σ ø mittelwert mittel standardabweichung streuung spannweite varianz anzahl summe";
 
 /// The head of a table.
-pub(super) struct Head {
+pub(super) struct SheetHead {
     pub(super) names: Vec<String>,
     /// The row that names the columns, the last of two.
     pub(super) header: usize,
@@ -31,7 +31,7 @@ fn is_text(cell: &&Data) -> bool {
 }
 
 /// The first head with rows of numbers below.
-pub(super) fn head(rows: &[&[Data]]) -> Option<Head> {
+pub(super) fn head(rows: &[&[Data]]) -> Option<SheetHead> {
     (0..rows.len().min(FIRST)).find_map(|at| two_lines(rows, at).or_else(|| one_line(rows, at)))
 }
 
@@ -52,7 +52,7 @@ fn begin(
 }
 
 /// A row of texts.
-fn one_line(rows: &[&[Data]], header: usize) -> Option<Head> {
+fn one_line(rows: &[&[Data]], header: usize) -> Option<SheetHead> {
     let row = rows.get(header)?;
     let texts = row.iter().filter(is_text).count();
     if texts < FEWEST_COLUMNS || row.iter().any(|it| !is_empty(it) && !is_text(&it)) {
@@ -60,11 +60,17 @@ fn one_line(rows: &[&[Data]], header: usize) -> Option<Head> {
     }
     let (units, begin) = begin(rows, header, |at| row.get(at).is_some_and(|it| !is_empty(it)))?;
     let columns = row.iter().rposition(|it| !is_empty(it)).map_or(0, |it| it + 1);
-    Some(Head { names: row.iter().take(columns).map(text).collect(), header, units, begin, is_two: false })
+    Some(SheetHead {
+        names: row.iter().take(columns).map(text).collect(),
+        header,
+        units,
+        begin,
+        is_two: false,
+    })
 }
 
 /// A row of groups, each over one column or several, and a row of names or of numbers that count from 1.
-fn two_lines(rows: &[&[Data]], above: usize) -> Option<Head> {
+fn two_lines(rows: &[&[Data]], above: usize) -> Option<SheetHead> {
     let (over, under) = (rows.get(above)?, rows.get(above + 1)?);
     let cells = |row: &[Data], at: usize| row.get(at).map_or_else(String::new, text);
     let width =
@@ -83,9 +89,11 @@ fn two_lines(rows: &[&[Data]], above: usize) -> Option<Head> {
         has_span |= own.is_empty() && group.is_some() && is_name(at);
         group = if own.is_empty() { group } else { Some(own) };
         let is_number = counted(&at).is_some();
-        let is_again = names.iter().filter(|it| plain(it) == plain(name)).count() > 1;
+        let is_again = names.iter().filter(|it| plain_letters(it) == plain_letters(name)).count() > 1;
         found.push(match group {
-            Some(group) if !name.is_empty() => joined(group, name, is_number || is_again || is_unit(name)),
+            Some(group) if !name.is_empty() => {
+                join_names(group, name, is_number || is_again || is_unit(name))
+            }
             Some(group) if !own.is_empty() => group.clone(),
             _ => name.clone(),
         });
@@ -97,14 +105,14 @@ fn two_lines(rows: &[&[Data]], above: usize) -> Option<Head> {
         && found.iter().filter(|it| !it.is_empty()).count() >= FEWEST_COLUMNS;
     let (units, begin) =
         begin(rows, above + 1, |at| found.get(at).is_some_and(|it| !it.is_empty())).filter(|_| is_head)?;
-    Some(Head { names: found, header: above + 1, units, begin, is_two: true })
+    Some(SheetHead { names: found, header: above + 1, units, begin, is_two: true })
 }
 
 /// A name below a group: with its words if other names are the same, and always with its unit.
-fn joined(group: &str, name: &str, with_words: bool) -> String {
+fn join_names(group: &str, name: &str, with_words: bool) -> String {
     let parts = |cell: &str| -> (String, Option<String>) {
         let found =
-            [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| bracketed(cell, open, close));
+            [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| split_brackets(cell, open, close));
         let found = found.filter(|it| unit_of(it.1.trim()).is_some());
         found.map_or((cell.trim().to_owned(), None), |(name, unit)| {
             (name.trim().to_owned(), Some(unit.trim().to_owned()))
@@ -123,7 +131,7 @@ pub(super) fn is_sum(row: &[Data]) -> bool {
     let first = row.iter().find(|it| !is_empty(it)).filter(is_text);
     first.is_some_and(|it| {
         let name = text(it);
-        let name = plain(name.split(['(', '[']).next().unwrap_or_default());
+        let name = plain_letters(name.split(['(', '[']).next().unwrap_or_default());
         SUMS.split_whitespace().any(|word| name == word)
     })
 }

@@ -13,15 +13,15 @@ use std::io::Cursor;
 
 use calamine::{Data, Ods, Range, Reader as _, Sheets, Xlsx};
 
-use self::archive::Parts;
-use self::cells::{Book, Formulas, Left, ReadSheet};
-use self::heads::{Head, head, is_sum};
-use super::maker::{Column, Made, Refused, Value};
-use super::words::{number, quoted};
+use self::archive::ArchiveParts;
+use self::cells::{Formulas, ReadSheet, RemainingAllowance, WorkbookBytes};
+use self::heads::{SheetHead, head, is_sum};
+use super::made_table::{CellValue, MadeTable, Refusal, TableColumn};
+use super::words::{number, quote_names};
 use super::workbook_cells::{is_empty, no_number, refuse_uncomputed, text, value};
-use super::{Opening, two_sets};
+use super::{OpeningContext, two_sets};
 use crate::table::mapping::ColumnMap;
-use crate::table::places::Sheet;
+use crate::table::source_cells::WorkbookSheet;
 use poecal_numerics::error::first_few;
 use poecal_storage::containers::office;
 
@@ -32,7 +32,7 @@ pub(crate) fn is_one(head: &[u8]) -> bool {
 
 /// A workbook whose sheets are read one by one.
 enum Workbook<'b> {
-    Archive(Box<Book<'b>>, Left),
+    Archive(Box<WorkbookBytes<'b>>, RemainingAllowance),
     Read(Vec<ReadSheet>),
 }
 
@@ -41,14 +41,14 @@ impl<'b> Workbook<'b> {
         if bytes.starts_with(office::MAGIC) {
             return old::sheets(bytes).map(Workbook::Read);
         }
-        let parts = Parts::from_bytes(bytes)?;
+        let parts = ArchiveParts::from_bytes(bytes)?;
         let cursor = Cursor::new(bytes);
         let book = Xlsx::new(cursor.clone()).map(Sheets::Xlsx).or_else(|_| Ods::new(cursor).map(Sheets::Ods)).map_err(|_| {
             "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
              save the table as `CSV UTF-8`"
         })?;
         parts.refuse_sheets(book.sheet_names().len())?;
-        Ok(Workbook::Archive(Box::new(book), Left::of_workbook()))
+        Ok(Workbook::Archive(Box::new(book), RemainingAllowance::of_workbook()))
     }
 
     fn names(&self) -> Vec<String> {
@@ -79,24 +79,27 @@ impl<'b> Workbook<'b> {
 }
 
 /// The table of a workbook.
-pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused> {
+pub(crate) fn table(bytes: &[u8], opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let mut book = Workbook::open(bytes)?;
     let names = book.names();
     let wanted = opening.options.sheet.as_ref();
     if let Some(wanted) = wanted.filter(|it| !names.contains(it)) {
-        return Refused::whole(format!("found no sheet `{wanted}`, expected one of {}", quoted(&names)));
+        return Refusal::refuse_whole(format!(
+            "found no sheet `{wanted}`, expected one of {}",
+            quote_names(&names)
+        ));
     }
     let mut tables = Vec::new();
     for name in wanted.map_or(names.iter().collect(), |it| vec![it]) {
-        tables.extend(Found::from_range(book.range(name)?, name));
+        tables.extend(SheetTable::from_range(book.range(name)?, name));
     }
     if let [found] = tables.as_slice() {
         return found.sets(&book.formulas(&found.sheet.name, &found.range), opening);
     }
     let (one, many) = (names.len() == 1, !tables.is_empty());
-    Refused::whole(match wanted {
+    Refusal::refuse_whole(match wanted {
         _ if many => {
-            let names = quoted(tables.iter().map(|it| &it.sheet.name));
+            let names = quote_names(tables.iter().map(|it| &it.sheet.name));
             format!("found tables in the sheets {names}, expected one: name it by --sheet")
         }
         Some(name) => format!(
@@ -105,7 +108,7 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
         None => format!(
             "found no table in the sheet{} {}, expected a sheet with a row that names the columns and rows of numbers below it",
             if one { "" } else { "s" },
-            quoted(&names)
+            quote_names(&names)
         ),
     })
 }
@@ -114,9 +117,9 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
 const LAST: usize = 10;
 
 /// The table of a sheet: its header, units and rows by their numbers in the range.
-struct Found {
+struct SheetTable {
     range: Range<Data>,
-    sheet: Sheet,
+    sheet: WorkbookSheet,
     header: usize,
     names: Vec<String>,
     units: Option<usize>,
@@ -126,11 +129,11 @@ struct Found {
     sums: Vec<usize>,
 }
 
-impl Found {
+impl SheetTable {
     /// The first head with numbers below.
     fn from_range(range: Range<Data>, name: &str) -> Option<Self> {
         let rows: Vec<&[Data]> = range.rows().collect();
-        let Head { names, header, units, begin, is_two } = head(&rows)?;
+        let SheetHead { names, header, units, begin, is_two } = head(&rows)?;
         let is_filled =
             |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(names.len()).all(is_empty));
         let mut rows_at: Vec<usize> = (begin..rows.len()).filter(is_filled).collect();
@@ -140,8 +143,8 @@ impl Found {
         let sum = rows_at.iter().skip(first).position(is_sum).map_or(rows_at.len(), |it| first + it);
         let sums = rows_at.split_off(sum);
         let first_column = range.start().map_or(0, |it| it.1 as usize);
-        let sheet = Sheet { name: name.to_owned(), first_column };
-        Some(Found { sheet, header, names, units, rows: rows_at, is_two, sums, range })
+        let sheet = WorkbookSheet { name: name.to_owned(), first_column };
+        Some(SheetTable { sheet, header, names, units, rows: rows_at, is_two, sums, range })
     }
 
     /// The number of a row in the sheet.
@@ -154,22 +157,26 @@ impl Found {
     }
 
     /// The table, or both tables if it has two sets of coordinates, unless a mapping names columns.
-    fn sets(&self, formulas: &Formulas, opening: &Opening<'_>) -> Result<Made, Refused> {
+    fn sets(&self, formulas: &Formulas, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
         refuse_uncomputed(formulas, &self.range, &self.sheet, (&self.rows, &self.names))?;
         let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
         let is_mapped = opening.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
         match two_sets::split(&names).filter(|_| !is_mapped) {
-            Some(([first, second], called)) => Ok(self.made(&first)?.with_other(called, self.made(&second)?)),
-            None => self.made(&names.into_iter().map(Column::from).enumerate().collect::<Vec<_>>()),
+            Some(([first, second], called)) => {
+                Ok(self.make_table(&first)?.with_other(called, self.make_table(&second)?))
+            }
+            None => {
+                self.make_table(&names.into_iter().map(TableColumn::from).enumerate().collect::<Vec<_>>())
+            }
         }
     }
 
     /// The table of some columns.
-    fn made(&self, columns: &[(usize, Column)]) -> Result<Made, Refused> {
-        let mut made = Made::new(self.line(self.header), columns.iter().map(|it| it.1.clone()));
+    fn make_table(&self, columns: &[(usize, TableColumn)]) -> Result<MadeTable, Refusal> {
+        let mut made = MadeTable::new(self.line(self.header), columns.iter().map(|it| it.1.clone()));
         if let Some(units) = self.units {
             let texts: Vec<String> = columns.iter().map(|it| text(self.cell(units, it.0))).collect();
-            made.row(self.line(units), texts.iter().map(|it| Value::Text(it)));
+            made.row(self.line(units), texts.iter().map(|it| CellValue::Text(it)));
         }
         // Columns of numbers: a text in them is a number or a mistake.
         let is_numeric = |column: usize| {
@@ -180,9 +187,11 @@ impl Found {
         let mut stored = Vec::new();
         for &row in &self.rows {
             let cells = numeric.iter();
-            let cells: Vec<(String, Option<f64>)> =
-                cells.map(|(at, it)| self.typed((row, *at), *it, &mut stored)).collect::<Result<_, _>>()?;
-            let typed = cells.iter().map(|(text, number)| number.map_or(Value::Text(text), Value::Number));
+            let cells: Vec<(String, Option<f64>)> = cells
+                .map(|(at, it)| self.read_cell((row, *at), *it, &mut stored))
+                .collect::<Result<_, _>>()?;
+            let typed =
+                cells.iter().map(|(text, number)| number.map_or(CellValue::Text(text), CellValue::Number));
             made.row(self.line(row), typed);
         }
         let (name, first) = (&self.sheet.name, self.rows.first().map_or(0, |at| self.line(*at)));
@@ -209,12 +218,12 @@ impl Found {
     }
 
     /// The text of a cell, or its number; numbers stored as text in a column of numbers are reported.
-    fn typed(
+    fn read_cell(
         &self,
         (row, column): (usize, usize),
         is_numeric: bool,
         stored: &mut Vec<String>,
-    ) -> Result<(String, Option<f64>), Refused> {
+    ) -> Result<(String, Option<f64>), Refusal> {
         let cell = self.cell(row, column);
         if let Some(shown) = no_number(cell, self.names.get(column).map_or("", String::as_str)) {
             return Ok((shown, None));
@@ -226,7 +235,7 @@ impl Found {
         let Some(value) = number(&written).filter(|_| is_numeric) else { return Ok((written, None)) };
         let place = self.sheet.cell(column, self.line(row));
         if is_ambiguous(&written) {
-            return Refused::whole(format!(
+            return Refusal::refuse_whole(format!(
                 "sheet `{}`, cell {place}: found the text `{written}`, which is {value} with a decimal comma and another number with a \
                  separator of thousands, expected a number: type it in anew",
                 self.sheet.name

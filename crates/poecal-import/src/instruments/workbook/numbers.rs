@@ -1,11 +1,11 @@
 //! Cells of workbooks without another reader: stored numbers, shared texts, and the styles that mark dates.
 
 use calamine::{Data, ExcelDateTime, ExcelDateTimeType};
-use poecal_storage::containers::fields::Fields;
+use poecal_storage::containers::fields::ByteFields;
 
 /// Data that the cells of a workbook share.
 #[derive(Default)]
-pub(crate) struct Shared {
+pub(crate) struct WorkbookContext {
     pub(crate) texts: Vec<String>,
     /// Formats of the workbook itself, by number.
     pub(crate) formats: Vec<(u16, String)>,
@@ -14,7 +14,7 @@ pub(crate) struct Shared {
     dates: Vec<bool>,
 }
 
-impl Shared {
+impl WorkbookContext {
     /// Takes the styles of cells, by the numbers of their formats.
     pub(crate) fn take_styles(&mut self, styles: &[u16]) {
         let is_date = |style: &u16| {
@@ -32,18 +32,18 @@ impl Shared {
     }
 
     /// The shared text whose number comes next.
-    pub(crate) fn text(&self, fields: &mut Fields<'_>) -> Option<Data> {
+    pub(crate) fn text(&self, fields: &mut ByteFields<'_>) -> Option<Data> {
         self.texts.get(fields.index()?).cloned().map(Data::String)
     }
 }
 
 /// A number in eight bytes.
-pub(crate) fn long(fields: &mut Fields<'_>) -> Option<f64> {
+pub(crate) fn read_long(fields: &mut ByteFields<'_>) -> Option<f64> {
     fields.u64().map(f64::from_bits)
 }
 
 /// A number in four bytes: an integer or the upper half of a number, maybe hundredths.
-pub(crate) fn short(fields: &mut Fields<'_>) -> Option<f64> {
+pub(crate) fn read_short(fields: &mut ByteFields<'_>) -> Option<f64> {
     let bits = fields.u32()?;
     let value = if bits & 2 != 0 {
         f64::from(bits.cast_signed() >> 2)
@@ -54,9 +54,9 @@ pub(crate) fn short(fields: &mut Fields<'_>) -> Option<f64> {
 }
 
 /// A text of `count` letters of two bytes.
-pub(crate) fn wide(fields: &mut Fields<'_>, count: usize) -> Option<String> {
+pub(crate) fn read_wide(fields: &mut ByteFields<'_>, count: usize) -> Option<String> {
     let pairs = fields.bytes(count.checked_mul(2)?)?.chunks_exact(2);
-    let units: Vec<u16> = pairs.filter_map(|it| Fields(it).u16()).collect();
+    let units: Vec<u16> = pairs.filter_map(|it| ByteFields(it).u16()).collect();
     Some(String::from_utf16_lossy(&units))
 }
 

@@ -2,9 +2,9 @@
 
 use calamine::Data;
 
-use super::cells::{Found, Left, ReadSheet};
-use super::numbers::{Shared, long, short, wide};
-use poecal_storage::containers::fields::Fields;
+use super::cells::{ReadSheet, RemainingAllowance, SheetCells};
+use super::numbers::{WorkbookContext, read_long, read_short, read_wide};
+use poecal_storage::containers::fields::ByteFields;
 use poecal_storage::containers::office::workbook;
 
 /// Kinds of records.
@@ -39,23 +39,23 @@ struct Record<'b> {
 }
 
 /// The records of a stream, up to the end of a part of it.
-struct Records<'b>(Fields<'b>);
+struct StreamRecords<'b>(ByteFields<'b>);
 
-impl<'b> Records<'b> {
-    fn one(&mut self) -> Option<(u16, &'b [u8])> {
+impl<'b> StreamRecords<'b> {
+    fn next_record(&mut self) -> Option<(u16, &'b [u8])> {
         let (kind, size) = (self.0.u16()?, self.0.u16()?);
         Some((kind, self.0.bytes(usize::from(size))?))
     }
 }
 
-impl<'b> Iterator for Records<'b> {
+impl<'b> Iterator for StreamRecords<'b> {
     type Item = Record<'b>;
 
     fn next(&mut self) -> Option<Record<'b>> {
-        let (kind, own) = self.one().filter(|it| it.0 != kind::END)?;
+        let (kind, own) = self.next_record().filter(|it| it.0 != kind::END)?;
         let mut parts = vec![own];
-        while Fields(self.0.0).u16() == Some(kind::MORE) {
-            parts.push(self.one()?.1);
+        while ByteFields(self.0.0).u16() == Some(kind::MORE) {
+            parts.push(self.next_record()?.1);
         }
         Some(Record { kind, parts })
     }
@@ -70,11 +70,11 @@ pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<ReadSheet>, String> {
         "found a container of an old office program without a workbook, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
          save the table as `CSV UTF-8`",
     )?;
-    let (shared, named) = shared(&stream)?;
-    let mut left = Left::of_workbook();
+    let (shared, named) = read_shared(&stream)?;
+    let mut left = RemainingAllowance::of_workbook();
     let mut found = Vec::new();
     for (start, name) in named {
-        let mut cells = Found::default();
+        let mut cells = SheetCells::default();
         shared.read(stream.get(start..).unwrap_or_default(), &mut cells, &mut left)?;
         found.push((name, cells.range(&mut left)));
     }
@@ -82,10 +82,10 @@ pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<ReadSheet>, String> {
 }
 
 /// The data that the sheets share, and the beginning and the name of each sheet.
-fn shared(stream: &[u8]) -> Result<(Shared, Vec<(usize, String)>), String> {
-    let (mut shared, mut named, mut styles) = (Shared::default(), Vec::new(), Vec::new());
-    for Record { kind, parts } in Records(Fields(stream)) {
-        let mut data = Fields(parts.first().copied().unwrap_or_default());
+fn read_shared(stream: &[u8]) -> Result<(WorkbookContext, Vec<(usize, String)>), String> {
+    let (mut shared, mut named, mut styles) = (WorkbookContext::default(), Vec::new(), Vec::new());
+    for Record { kind, parts } in StreamRecords(ByteFields(stream)) {
+        let mut data = ByteFields(parts.first().copied().unwrap_or_default());
         match kind {
             kind::BEGIN if data.u16() != Some(VERSION) => {
                 return Err("found a workbook of Excel 95 or earlier, expected one of Excel 97 or later: save it as .xlsx".to_owned());
@@ -108,13 +108,18 @@ fn shared(stream: &[u8]) -> Result<(Shared, Vec<(usize, String)>), String> {
     Ok((shared, named))
 }
 
-impl Shared {
+impl WorkbookContext {
     /// Reads the cells of a sheet.
-    fn read(&self, stream: &[u8], cells: &mut Found, left: &mut Left) -> Result<(), String> {
+    fn read(
+        &self,
+        stream: &[u8],
+        cells: &mut SheetCells,
+        left: &mut RemainingAllowance,
+    ) -> Result<(), String> {
         // The cell of a formula whose text follows in a record of its own.
         let mut waiting = None;
-        for Record { kind, parts } in Records(Fields(stream)) {
-            let mut data = Fields(parts.first().copied().unwrap_or_default());
+        for Record { kind, parts } in StreamRecords(ByteFields(stream)) {
+            let mut data = ByteFields(parts.first().copied().unwrap_or_default());
             if kind == kind::OF_FORMULA {
                 if let Some((place, value)) = waiting.take().zip(text(&mut data)) {
                     cells.add(place, Data::String(value), left)?;
@@ -130,15 +135,17 @@ impl Shared {
                     waiting = (*first == 0).then_some(place);
                     None
                 }
-                (kind::NUMBER | kind::FORMULA, _) => long(&mut data).and_then(|it| self.number(it, style)),
-                (kind::SHORT, _) => short(&mut data).and_then(|it| self.number(it, style)),
+                (kind::NUMBER | kind::FORMULA, _) => {
+                    read_long(&mut data).and_then(|it| self.number(it, style))
+                }
+                (kind::SHORT, _) => read_short(&mut data).and_then(|it| self.number(it, style)),
                 (kind::LABEL | kind::RICH, _) => text(&mut data).map(Data::String),
                 (kind::OF_TEXTS, _) => self.text(&mut data),
                 (kind::FLAG, [flag, 0, ..]) => Some(Data::Bool(*flag != 0)),
                 (kind::SEVERAL, _) => {
                     for (next, own) in (0_u32..).zip(several) {
-                        let mut own = Fields(own);
-                        let value = own.u16().zip(short(&mut own));
+                        let mut own = ByteFields(own);
+                        let value = own.u16().zip(read_short(&mut own));
                         let value = value.and_then(|(style, it)| self.number(it, style));
                         value.map_or(Ok(()), |it| cells.add((place.0, place.1 + next), it, left))?;
                     }
@@ -153,7 +160,7 @@ impl Shared {
 }
 
 /// A sheet of numbers: its beginning and its name.
-fn sheet(mut data: Fields<'_>) -> Option<(usize, String)> {
+fn sheet(mut data: ByteFields<'_>) -> Option<(usize, String)> {
     let (start, _, kind) = (data.index()?, data.u8()?, data.u8()?);
     let (count, is_wide) = (data.u8()?, data.u8()? & 1 != 0);
     let name = letters(&mut data, usize::from(count), is_wide)?;
@@ -161,15 +168,15 @@ fn sheet(mut data: Fields<'_>) -> Option<(usize, String)> {
 }
 
 /// A text that states its number of letters and whether they have two bytes.
-fn text(data: &mut Fields<'_>) -> Option<String> {
+fn text(data: &mut ByteFields<'_>) -> Option<String> {
     let (count, is_wide) = (data.u16()?, data.u8()? & 1 != 0);
     letters(data, usize::from(count), is_wide)
 }
 
 /// A text of `count` letters of one or two bytes.
-fn letters(data: &mut Fields<'_>, count: usize, is_wide: bool) -> Option<String> {
+fn letters(data: &mut ByteFields<'_>, count: usize, is_wide: bool) -> Option<String> {
     if is_wide {
-        return wide(data, count);
+        return read_wide(data, count);
     }
     Some(data.bytes(count)?.iter().map(|it| char::from(*it)).collect())
 }
@@ -177,32 +184,32 @@ fn letters(data: &mut Fields<'_>, count: usize, is_wide: bool) -> Option<String>
 /// The texts that cells share: a list over several records. A text may be cut, and its width is stated again behind the cut.
 fn texts(parts: &[&[u8]]) -> Vec<String> {
     let Some((first, others)) = parts.split_first() else { return Vec::new() };
-    let mut parts = Cut { rest: Fields(first), others };
-    match parts.here().and_then(|it| it.bytes(8)) {
+    let mut parts = RecordBytes { rest: ByteFields(first), others };
+    match parts.current_fields().and_then(|it| it.bytes(8)) {
         Some(_) => std::iter::from_fn(|| parts.text()).collect(),
         None => Vec::new(),
     }
 }
 
 /// The bytes of a record and of those that continue it.
-struct Cut<'p> {
-    rest: Fields<'p>,
+struct RecordBytes<'p> {
+    rest: ByteFields<'p>,
     others: &'p [&'p [u8]],
 }
 
-impl<'p> Cut<'p> {
+impl<'p> RecordBytes<'p> {
     /// The rest of the record, or of the next one at its end.
-    fn here(&mut self) -> Option<&mut Fields<'p>> {
+    fn current_fields(&mut self) -> Option<&mut ByteFields<'p>> {
         while self.rest.0.is_empty() {
             let (first, others) = self.others.split_first()?;
-            (self.rest, self.others) = (Fields(first), others);
+            (self.rest, self.others) = (ByteFields(first), others);
         }
         Some(&mut self.rest)
     }
 
     fn skip(&mut self, mut count: usize) -> Option<()> {
         while count > 0 {
-            let here = self.here()?;
+            let here = self.current_fields()?;
             let own = count.min(here.0.len());
             here.bytes(own)?;
             count -= own;
@@ -211,15 +218,15 @@ impl<'p> Cut<'p> {
     }
 
     fn text(&mut self) -> Option<String> {
-        let mut head = Fields(self.here()?.bytes(3)?);
+        let mut head = ByteFields(self.current_fields()?.bytes(3)?);
         let (mut left, flags) = (usize::from(head.u16()?), head.u8()?);
         let mut is_wide = flags & 1 != 0;
-        let runs = if flags & 8 != 0 { self.here()?.u16()? } else { 0 };
-        let beside = if flags & 4 != 0 { self.here()?.index()? } else { 0 };
+        let runs = if flags & 8 != 0 { self.current_fields()?.u16()? } else { 0 };
+        let beside = if flags & 4 != 0 { self.current_fields()?.index()? } else { 0 };
         let mut found = String::new();
         while left > 0 {
             if self.rest.0.is_empty() {
-                is_wide = self.here()?.u8()? & 1 != 0;
+                is_wide = self.current_fields()?.u8()? & 1 != 0;
             }
             let here = left.min(self.rest.0.len() / if is_wide { 2 } else { 1 });
             if here == 0 {
@@ -237,8 +244,8 @@ impl<'p> Cut<'p> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use poecal_storage::limits::{self, Limit};
-    use poecal_testing::damage::damaged;
+    use poecal_storage::limits::{self, ResourceLimit};
+    use poecal_testing::damage::read_damaged;
     use poecal_testing::old_workbook::container;
 
     fn record(kind: u16, data: &[u8]) -> Vec<u8> {
@@ -250,20 +257,20 @@ mod tests {
         record(kind, &[&row.to_le_bytes()[..], &column.to_le_bytes(), &style.to_le_bytes(), data].concat())
     }
 
-    fn counted(text: &str) -> Vec<u8> {
+    fn counted_text(text: &str) -> Vec<u8> {
         [&u16::try_from(text.len()).unwrap().to_le_bytes()[..], &[0], text.as_bytes()].concat()
     }
 
     /// A workbook of one sheet: its texts in two records, the second of which begins within the text `second`.
     fn stream(cells: &[Vec<u8>]) -> Vec<u8> {
         let begin = record(kind::BEGIN, &[0, 6, 5, 0]);
-        let shared = [&[2, 0, 0, 0, 2, 0, 0, 0][..], &counted("first"), &[6, 0, 0], b"sec"].concat();
+        let shared = [&[2, 0, 0, 0, 2, 0, 0, 0][..], &counted_text("first"), &[6, 0, 0], b"sec"].concat();
         let more = [&[1][..], &"ond".encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>()].concat();
         let globals = |start: u32| {
             let name = [&start.to_le_bytes()[..], &[0, 0, 5, 0], b"Rows1"].concat();
             [
                 begin.clone(),
-                record(kind::FORMAT, &[&[164, 0][..], &counted("yyyy\\-mm \"d\"")].concat()),
+                record(kind::FORMAT, &[&[164, 0][..], &counted_text("yyyy\\-mm \"d\"")].concat()),
                 record(kind::STYLE, &[0, 0, 0, 0]),
                 record(kind::STYLE, &[0, 0, 164, 0]),
                 record(kind::SHEET, &name),
@@ -282,7 +289,7 @@ mod tests {
         vec![
             cell(kind::OF_TEXTS, [0, 0, 0], &[0, 0, 0, 0]),
             cell(kind::OF_TEXTS, [0, 1, 0], &[1, 0, 0, 0]),
-            cell(kind::LABEL, [0, 2, 0], &counted("third")),
+            cell(kind::LABEL, [0, 2, 0], &counted_text("third")),
             cell(kind::NUMBER, [1, 0, 0], &number(1.5)),
             // 250 hundredths, and the upper half of 0.25.
             cell(kind::SHORT, [1, 1, 0], &(250_u32 << 2 | 3).to_le_bytes()),
@@ -294,7 +301,7 @@ mod tests {
             cell(kind::NUMBER, [2, 0, 1], &number(2.0)),
             cell(kind::FORMULA, [2, 1, 0], &[&number(7.0)[..], &[0; 8]].concat()),
             cell(kind::FORMULA, [2, 2, 0], &[0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0, 0]),
-            record(kind::OF_FORMULA, &counted("made")),
+            record(kind::OF_FORMULA, &counted_text("made")),
             cell(kind::FLAG, [3, 0, 0], &[1, 0]),
         ]
     }
@@ -330,12 +337,12 @@ mod tests {
             error.starts_with("found a sheet of 65536 rows and 16001 columns, expected at most"),
             "{error}"
         );
-        let few = limits::here().with(Limit::Cells, 11);
-        assert!(limits::on(few, || sheets(&container(&stream(&example())))).is_err());
+        let few = limits::current_limits().with_limit(ResourceLimit::Cells, 11);
+        assert!(limits::run_with_limits(few, || sheets(&container(&stream(&example())))).is_err());
     }
 
     #[test]
     fn no_bytes_end_in_a_panic() {
-        damaged(&container(&stream(&example())), |bytes| drop(sheets(bytes)));
+        read_damaged(&container(&stream(&example())), |bytes| drop(sheets(bytes)));
     }
 }

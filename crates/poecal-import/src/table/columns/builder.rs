@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::header::Header;
-use super::super::inputs::{Input, InputSource, Term};
+use super::super::inputs::{InputSource, RowInput, SumTerm};
 use super::super::kinds::is_our_name;
-use super::super::numbered::numbered;
+use super::super::numbered_columns::match_numbered_columns;
 use super::super::times::seconds_of;
 use super::column_spec::ColumnSpec;
 use super::mapping::ColumnMap;
@@ -23,7 +23,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) header: &'a Header<'a>,
     pub(crate) map: &'a ColumnMap,
     pub(crate) readings: BTreeSet<String>,
-    pub(crate) inputs: Vec<Input>,
+    pub(crate) inputs: Vec<RowInput>,
     used: Vec<bool>,
     /// Joints with the numbered columns that are taken for them, if no column has the name of a joint.
     pub(crate) numbered: Option<Vec<(String, String)>>,
@@ -55,7 +55,7 @@ impl<'a> Builder<'a> {
         let kept = kept.filter(|_| map.joints.is_empty() && map.third_axis.is_none());
         let missed = kept.filter(|kept| !kept.is_plain() && !has_all(kept)).map(Controller::words);
         let kept = kept.filter(has_all);
-        let numbered = if kept.is_some() { None } else { numbered(header, robot, map, &names) };
+        let numbered = if kept.is_some() { None } else { match_numbered_columns(header, robot, map, &names) };
         let mut builder = Builder { header, map, readings, inputs: Vec::new(), used, numbered, missed };
         let default = ColumnSpec::default();
         let numbers = builder.numbered.clone().into_iter().flatten();
@@ -83,8 +83,8 @@ impl<'a> Builder<'a> {
     }
 
     /// A sum of columns in words.
-    pub(crate) fn label(&self, sum: &[Term]) -> String {
-        let name = |term: &Term| self.header.cells.get(term.column).map_or("", |cell| cell.name.as_str());
+    pub(crate) fn label(&self, sum: &[SumTerm]) -> String {
+        let name = |term: &SumTerm| self.header.cells.get(term.column).map_or("", |cell| cell.name.as_str());
         sum_words(sum.iter().map(|term| (name(term), term.factor)))
     }
 
@@ -101,7 +101,7 @@ impl<'a> Builder<'a> {
         }
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));
         let (unit, unit_from) = (NamedUnit::from(Unit::One), UnitSource::Si);
-        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
+        self.inputs.push(RowInput { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(())
     }
 
@@ -150,7 +150,7 @@ impl<'a> Builder<'a> {
         (unit, unit_from): (NamedUnit, UnitSource),
     ) -> usize {
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Constant(value));
-        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
+        self.inputs.push(RowInput { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         self.inputs.len() - 1
     }
 
@@ -208,7 +208,7 @@ impl<'a> Builder<'a> {
             (None, _) => (NamedUnit::from(quantity), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), InputSource::Column(index));
-        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
+        self.inputs.push(RowInput { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(self.inputs.len() - 1)
     }
 
@@ -220,7 +220,7 @@ impl<'a> Builder<'a> {
         let index = self
             .header
             .require(name, purpose, is_known, advice)
-            .map_err(|error| self.explained(name, error))?;
+            .map_err(|error| self.explain_duplicate(name, error))?;
         self.mark(index);
         Ok(index)
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::super::header_cells::unit_in_name;
-use super::super::inputs::{Input, InputSource};
+use super::super::inputs::{InputSource, RowInput};
 use super::super::kinds::{is_our_name, our_names};
 use super::builder::Builder;
 use poecal_numerics::error::{Error, ErrorKind, Result, distance_within};
@@ -11,8 +11,8 @@ use poecal_numerics::error::{Error, ErrorKind, Result, distance_within};
 impl Builder<'_> {
     /// Refuses a column with two meanings. (One sigma may serve several targets, and one column several sums.)
     pub(crate) fn check_distinct(&self) -> Result<()> {
-        let distinct = |input: &Input| !input.name.contains("sigma_") && input.sum.is_empty();
-        let mut first: BTreeMap<usize, &Input> = BTreeMap::new();
+        let distinct = |input: &RowInput| !input.name.contains("sigma_") && input.sum.is_empty();
+        let mut first: BTreeMap<usize, &RowInput> = BTreeMap::new();
         for input in self.inputs.iter().filter(|input| distinct(input)) {
             let InputSource::Column(index) = input.source else { continue };
             if let Some(other) = first.insert(index, input) {
@@ -31,19 +31,19 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(crate) fn ignored(&self) -> Vec<(String, Option<String>)> {
+    pub(crate) fn ignored_columns(&self) -> Vec<(String, Option<String>)> {
         let cells = self.header.cells.iter().enumerate();
         let missing: Vec<&'static str> = our_names().filter(|ours| self.header.count(ours) == 0).collect();
         cells
             .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
-            .map(|(_, cell)| (cell.text.clone(), meant(&cell.name, &missing)))
+            .map(|(_, cell)| (cell.text.clone(), resembling_name(&cell.name, &missing)))
             .collect()
     }
 
     /// Explains a duplicate column by a joint of the model with the name of a column with a meaning.
-    pub(crate) fn explained(&self, name: &str, error: Error) -> Error {
+    pub(crate) fn explain_duplicate(&self, name: &str, error: Error) -> Error {
         let is_clash = self.readings.contains(name) && is_our_name(name);
-        match self.header.second(name) {
+        match self.header.second_index(name) {
             Some(second) if is_clash => {
                 let message = format!("found a second column `{name}`, {}", clash(name));
                 self.header.error(ErrorKind::Measurement, second, message)
@@ -54,7 +54,7 @@ impl Builder<'_> {
 }
 
 /// A missing name of our form that an unused column resembles, except for a typing error or brackets.
-fn meant(name: &str, missing: &[&'static str]) -> Option<String> {
+fn resembling_name(name: &str, missing: &[&'static str]) -> Option<String> {
     let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
     let with_unit = |ours: &str| Some(format!("{ours}[{}]", unit_in_name(name, ours)?.symbol()));
     missing.iter().find_map(|ours| {

@@ -1,7 +1,7 @@
 //! Columns with the names of a maker: X, Y, Z beside its angles.
 
 use super::super::cells::{Separator, split};
-use super::super::conventions::{CONVENTIONS, Convention};
+use super::super::conventions::{CONVENTIONS, OrientationConvention};
 use super::builder::Builder;
 use poecal_numerics::unit::Unit;
 
@@ -15,7 +15,7 @@ impl Builder<'_> {
     /// The convention of a maker whose columns the header has beside its X, Y, Z, and these columns. All have units or none, and numbers in the
     /// first row.
     /// first row.
-    pub(super) fn convention(&self) -> Option<(&'static Convention, Vec<String>)> {
+    pub(super) fn convention(&self) -> Option<(&'static OrientationConvention, Vec<String>)> {
         let has_mapped_position = self.map.position.is_some();
         let first: Vec<Option<f64>> =
             self.first_numbers().filter(|_| self.has_large_axes() && !has_mapped_position)?;
@@ -61,7 +61,7 @@ impl Builder<'_> {
     fn first_numbers(&self) -> Option<Vec<Option<f64>>> {
         let row = self.header.first_row()?;
         let mut cells = Vec::new();
-        split(&row, Separator::recognised(&row), &mut cells).ok()?;
+        split(&row, Separator::recognise(&row), &mut cells).ok()?;
         Some(cells.iter().map(|cell| cell.raw.replace(',', ".").parse().ok()).collect())
     }
 }

@@ -19,7 +19,7 @@ use poecal_model::robot::ThirdAxis;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
-use poecal_storage::limits::Limit;
+use poecal_storage::limits::ResourceLimit;
 use poecal_storage::source_text;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
@@ -140,7 +140,10 @@ impl ColumnMap {
     /// [`ErrorKind::File`] if it cannot be read, else those of [`ColumnMap::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        ColumnMap::parse(&source_text::read_up_to(path, "a column mapping (TOML)", Limit::Settings)?, path)
+        ColumnMap::parse(
+            &source_text::read_up_to(path, "a column mapping (TOML)", ResourceLimit::Settings)?,
+            path,
+        )
     }
 
     /// A mapping from its TOML text; `path` is its name in messages.
@@ -180,7 +183,7 @@ impl ColumnMap {
             map.iter().map(|(name, link)| (name.clone(), link.clone())).collect()
         };
         let (instruments, targets) = (pairs(&self.mount.instruments), pairs(&self.mount.targets));
-        selection.joined(&instruments, &targets).map_err(|error| error.in_file(&self.path))
+        selection.join(&instruments, &targets).map_err(|error| error.in_file(&self.path))
     }
 
     /// States units of columns that state none, unless it states them itself.

@@ -4,7 +4,7 @@ pub(crate) mod builder;
 pub(crate) mod column_meanings;
 pub(crate) mod column_names;
 pub(crate) mod column_spec;
-pub(crate) mod counted;
+pub(crate) mod controller_counts;
 mod makers_columns;
 pub(crate) mod mapping;
 pub(crate) mod mapping_values;

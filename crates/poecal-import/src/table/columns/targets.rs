@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::super::conventions::Convention;
-use super::super::inputs::{InputSource, Term};
-use super::super::kinds::{self, Kind, KindColumns};
+use super::super::conventions::OrientationConvention;
+use super::super::inputs::{InputSource, SumTerm};
+use super::super::kinds::{self, FunctionKind, KindColumns};
 use super::super::orientation::OrientationForm;
 use super::builder::Builder;
 use super::column_spec::ColumnSpec;
@@ -26,7 +26,7 @@ pub(crate) struct TargetLayout {
     pub(crate) position: Option<[usize; 3]>,
     pub(crate) orientation: Option<(OrientationForm, Vec<usize>)>,
     /// The convention of the orientation's columns, if these have the names of a maker.
-    pub(crate) convention: Option<&'static Convention>,
+    pub(crate) convention: Option<&'static OrientationConvention>,
     pub(crate) sigma_position: Option<usize>,
     /// Standard deviation of each component.
     pub(crate) sigma_components: [Option<usize>; 3],
@@ -79,7 +79,7 @@ impl Builder<'_> {
             (None, None, None) => None,
         };
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
-            let unstated = self.usual(usual(quantity));
+            let unstated = self.makers_unit(usual(quantity));
             self.sigma(&format!("{prefix}{name}"), spec, (quantity, unstated), is_only && position.is_some())
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Unit::Metre)?;
@@ -111,13 +111,15 @@ impl Builder<'_> {
         let mut found: Vec<KindColumns> = Vec::new();
         let mut known: BTreeMap<&str, usize> = BTreeMap::new();
         for kind in kinds::kinds() {
-            let Kind { function, columns } = kind;
+            let FunctionKind { function, columns } = kind;
             let has_number = columns.numbers.iter().any(|name| self.has(name));
             if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
                 continue;
             }
-            let (dimension, purpose) =
-                (function.leading().unit(), format!("for the {}", function.leading().name()));
+            let (dimension, purpose) = (
+                function.leading_quantity().unit(),
+                format!("for the {}", function.leading_quantity().name()),
+            );
             let mut numbers = Vec::with_capacity(columns.numbers.len());
             let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
             for &name in names.collect::<Vec<_>>() {
@@ -165,7 +167,7 @@ impl Builder<'_> {
             let own = if self.has_large_axes() { ["X", "Y", "Z"][i] } else { axis };
             let column = spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(own, String::as_str);
             let purpose = format!("for the position {prefix}{axis}");
-            let units = (spec.unit, self.usual(usual));
+            let units = (spec.unit, self.makers_unit(usual));
             let found = self.column_or(&format!("{prefix}{axis}"), column, Unit::Metre, units, &purpose);
             *index = found.map_err(|error| error.if_missing(MissingColumn::Position))?;
         }
@@ -186,7 +188,7 @@ impl Builder<'_> {
     }
 
     /// The unit of a maker, if nothing states one; in a line of units, an empty cell may be forgotten.
-    fn usual(&self, unit: Option<NamedUnit>) -> Option<(NamedUnit, UnitSource)> {
+    fn makers_unit(&self, unit: Option<NamedUnit>) -> Option<(NamedUnit, UnitSource)> {
         unit.filter(|_| self.header.units_line.is_none()).map(|unit| (unit, UnitSource::Maker))
     }
 
@@ -221,7 +223,7 @@ impl Builder<'_> {
         usual: Option<NamedUnit>,
     ) -> Result<(OrientationForm, Vec<usize>)> {
         let purpose = format!("for the orientation ({form})");
-        let units = (None, self.usual(usual));
+        let units = (None, self.makers_unit(usual));
         let names = columns.iter().zip(form.part_names());
         let indices =
             names.map(|(column, name)| self.column_or(name, column, form.quantity(), units, &purpose));
@@ -266,7 +268,7 @@ impl Builder<'_> {
         if let Some(input) = self.inputs.get_mut(index)
             && let InputSource::Column(column) = input.source
         {
-            input.sum = vec![Term { column, unit: input.unit, factor: 1.0 / COVERAGE_FACTOR }];
+            input.sum = vec![SumTerm { column, unit: input.unit, factor: 1.0 / COVERAGE_FACTOR }];
         }
         Ok(index)
     }

@@ -14,9 +14,9 @@ use poecal_numerics::named_unit::UnitSource;
 pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
     let [target] = layout.targets.as_slice() else { return None };
     match &target.orientation {
-        None => unread(header, layout),
+        None => describe_unread_columns(header, layout),
         Some((OrientationForm::ROTATION_VECTOR, columns)) if map.orientation.is_none() => {
-            backwards(header, layout, columns)
+            describe_reversed_columns(header, layout, columns)
         }
         Some(_) => None,
     }
@@ -45,7 +45,7 @@ pub(crate) fn note(layout: &ColumnLayout) -> Option<String> {
 }
 
 /// Columns of makers that the layout does not use.
-fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
+fn describe_unread_columns(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
     let left_alone = |name: &str| {
         let mut cells = header.cells.iter().filter(|cell| cell.name.eq_ignore_ascii_case(name));
         cells.find(|cell| layout.ignored.iter().any(|(text, _)| *text == cell.text))
@@ -54,12 +54,15 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
     let mapping = |form: &str, cells: &[&HeaderCell]| {
         let is_stated = cells.len() > 3 || cells.iter().all(|cell| cell.unit.is_some());
         let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
-        (columns.join(", "), mapped(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }))
+        (
+            columns.join(", "),
+            orientation_mapping(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }),
+        )
     };
     let known = CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
         // Joints may be named q1 to q6.
         let is_more = it.columns.len() > 3 && left_alone("q5").is_some();
-        let form = it.form.mapped();
+        let form = it.form.mapping_text();
         all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.clone()))
     });
     let ((columns, mapping), words) = known.or_else(|| {
@@ -73,7 +76,11 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
 }
 
 /// Columns of a rotation vector in the order of rotations about z, y, x.
-fn backwards(header: &Header<'_>, layout: &ColumnLayout, columns: &[usize]) -> Option<String> {
+fn describe_reversed_columns(
+    header: &Header<'_>,
+    layout: &ColumnLayout,
+    columns: &[usize],
+) -> Option<String> {
     let place = |&input: &usize| match layout.inputs.get(input)?.source {
         InputSource::Column(column) => Some(column),
         InputSource::Constant(_) => None,
@@ -92,12 +99,12 @@ fn backwards(header: &Header<'_>, layout: &ColumnLayout, columns: &[usize]) -> O
         "the columns {} are read as a rotation vector, and stand in the order of turns about z, then the new y, then the new x: if \
          they are these, a mapping (--columns) with {} has them read so",
         names.join(", "),
-        mapped("intrinsic_zyx", &names, "")
+        orientation_mapping("intrinsic_zyx", &names, "")
     ))
 }
 
 /// An orientation in a mapping.
-fn mapped(form: &str, columns: &[&str], unit: &str) -> String {
+fn orientation_mapping(form: &str, columns: &[&str], unit: &str) -> String {
     let columns: Vec<String> = columns.iter().map(|name| format!("\"{name}\"")).collect();
     format!("`orientation = {{ form = \"{form}\", columns = [{}]{unit} }}`", columns.join(", "))
 }

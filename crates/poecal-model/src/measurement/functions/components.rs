@@ -2,10 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::Row;
+use super::FunctionRow;
 use super::point::XYZ;
-use crate::measurement::session::{Draw, Kind, Session, Stands};
-use crate::measurement::{Channels, Clue, Function, Measurement, Quantity, Values};
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
+use crate::measurement::{
+    Channels, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity,
+};
 use poecal_arm::lie::Freedom;
 
 /// Channels of the components that are measured, by a bit of each.
@@ -23,7 +25,7 @@ static CHANNELS: [Channels; 8] = [
 /// Measured components of a target's position, `e = (y - p)` and `S = [I 0]` of those alone: a camera that looks along z measures x and y, a
 /// gauge on a rail one of them. They determine the device's frame except its position along the others (theory.md §4 (15)). The fourth value
 /// has a bit for each that was measured.
-static COMPONENTS: Function = Function {
+static COMPONENTS: MeasurementFunction = MeasurementFunction {
     name: "component",
     plural: "components",
     quantities: &[Quantity::Position],
@@ -45,35 +47,38 @@ static COMPONENTS: Function = Function {
         0b001 => Freedom::plane(0),
         0b010 => Freedom::plane(1),
         0b100 => Freedom::plane(2),
-        0b110 => Freedom::across(0),
-        0b101 => Freedom::across(1),
-        0b011 => Freedom::across(2),
+        0b110 => Freedom::without_slide(0),
+        0b101 => Freedom::without_slide(1),
+        0b011 => Freedom::without_slide(2),
         _ => Freedom::FRAME,
     },
-    clue: |values| Clue::Place([0, 1, 2].map(|k| indices(values).any(|own| own == k).then_some(values[k]))),
-    ..Function::USUAL
+    clue: |values| {
+        InitialGuess::Place([0, 1, 2].map(|k| indices(values).any(|own| own == k).then_some(values[k])))
+    },
+    ..MeasurementFunction::USUAL
 };
 
-fn bits(values: &Values) -> usize {
+fn bits(values: &MeasuredValues) -> usize {
     values[3] as usize & 0b111
 }
 
 /// Indices of the measured components.
-fn indices(values: &Values) -> impl Iterator<Item = usize> {
+fn indices(values: &MeasuredValues) -> impl Iterator<Item = usize> {
     let bits = bits(values);
     (0..3).filter(move |k| bits >> k & 1 == 1)
 }
 
-pub(crate) const ROW: Row = Row { function: &COMPONENTS, columns: &[], sessions: &[FROM_ABOVE] };
+pub(crate) const ROW: FunctionRow =
+    FunctionRow { function: &COMPONENTS, columns: &[], sessions: &[FROM_ABOVE] };
 
-const FROM_ABOVE: Session = Session {
+const FROM_ABOVE: SessionTraits = SessionTraits {
     word: "component",
     plural: Some("components"),
     help: "Some of x, y and z, as of a camera or a gauge on a rail",
     function: &COMPONENTS,
     places: &["camera"],
-    stands: Stands::Within,
-    drawn: Draw::Seen(|target, drawn| {
+    stands: StationLayout::Within,
+    drawn: MeasurementOrigin::Seen(|target, drawn| {
         let seen = target.translation + (drawn.lengths)();
         Measurement::components([Some(seen.x), Some(seen.y), None])
     }),
@@ -82,9 +87,9 @@ const FROM_ABOVE: Session = Session {
             # x, y, z     position of the target; leave a cell empty where that component was not measured.\n",
 };
 
-impl Kind {
+impl SessionKind {
     /// Two components of the tip's position, as a camera measures them.
-    pub const COMPONENT: Kind = Kind::new(&FROM_ABOVE);
+    pub const COMPONENT: SessionKind = SessionKind::new(&FROM_ABOVE);
 }
 
 impl Measurement {

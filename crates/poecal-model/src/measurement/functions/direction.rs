@@ -2,11 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::Row;
-use crate::measurement::columns::{Columns, From};
-use crate::measurement::session::{Draw, Kind, Session, Stands};
+use super::FunctionRow;
+use crate::measurement::columns::{FormCriterion, MeasurementColumns};
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
 use crate::measurement::{
-    Channel, Channels, Clue, Device, Function, Measurement, Quantity, Sensitivity, Values,
+    Channel, Channels, Device, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity,
+    Sensitivity,
 };
 use poecal_arm::lie::{Freedom, Pose, rotation, series};
 
@@ -20,25 +21,25 @@ static CHANNELS: Channels = Channels::new(&TILTS);
 
 /// The device's z in the target's axes, `u = Rᵀ e_z`, as an inclinometer on the tool measures the upward direction. The residual is the
 /// rotation about the target's axes from the measured direction m to the predicted one, in a basis across m (theory.md §4 (16b)).
-static DIRECTION: Function = Function {
+static DIRECTION: MeasurementFunction = MeasurementFunction {
     name: "direction",
     plural: "directions",
     quantities: &[Quantity::Tilt],
     channels: |_| &CHANNELS,
-    residual: |values, predicted, out| [out[0], out[1]] = tilts_between(&seen(values), predicted),
-    sensitivity: |values, predicted, out| [out[0], out[1]] = turned_by(&seen(values), predicted),
+    residual: |values, predicted, out| [out[0], out[1]] = tilts_between(&direction_of(values), predicted),
+    sensitivity: |values, predicted, out| [out[0], out[1]] = turned_by(&direction_of(values), predicted),
     with_angles_times: Some(|values, factor| {
-        let tilts = tilts_of(&seen(values)).map(|tilt| factor * tilt);
+        let tilts = tilts_of(&direction_of(values)).map(|tilt| factor * tilt);
         *Measurement::tilts(tilts).values()
     }),
     device: Device::Direction,
     device_freedom: |_| Freedom::tilt(2),
     target_freedom: |_| Freedom::TURN,
-    clue: |values| Clue::Up(seen(values)),
-    ..Function::USUAL
+    clue: |values| InitialGuess::Up(direction_of(values)),
+    ..MeasurementFunction::USUAL
 };
 
-fn seen([x, y, z, ..]: &Values) -> Vector3<f64> {
+fn direction_of([x, y, z, ..]: &MeasuredValues) -> Vector3<f64> {
     Vector3::new(*x, *y, *z)
 }
 
@@ -46,7 +47,7 @@ fn seen([x, y, z, ..]: &Values) -> Vector3<f64> {
 const OPPOSITE: f64 = 1e8;
 
 /// Two unit vectors across a measured direction, which complete a right-handed frame; x and y of the target if it is z.
-fn across(measured: &Vector3<f64>) -> [Vector3<f64>; 2] {
+fn perpendicular_pair(measured: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let turn = rotation::shortest_arc(&Vector3::z(), measured);
     [turn.column(0).into_owned(), turn.column(1).into_owned()]
 }
@@ -54,7 +55,7 @@ fn across(measured: &Vector3<f64>) -> [Vector3<f64>; 2] {
 /// Residual of a measured direction of the device's z.
 pub(crate) fn tilts_between(measured: &Vector3<f64>, predicted: &Pose) -> [f64; 2] {
     let u = predicted.rotation.row(2).transpose();
-    let [a, b] = across(measured);
+    let [a, b] = perpendicular_pair(measured);
     let angle = measured.cross(&u).norm().atan2(measured.dot(&u));
     let scale = 1.0 / series::sinc(angle * angle);
     // For the opposite direction the rotation is about any axis across.
@@ -65,7 +66,7 @@ pub(crate) fn tilts_between(measured: &Vector3<f64>, predicted: &Pose) -> [f64; 
 /// Sensitivity of the residual of a direction.
 pub(crate) fn turned_by(measured: &Vector3<f64>, predicted: &Pose) -> [Sensitivity; 2] {
     let (turn, u) = (predicted.rotation, predicted.rotation.row(2).transpose());
-    let [a, b] = across(measured);
+    let [a, b] = perpendicular_pair(measured);
     let angle = measured.cross(&u).norm().atan2(measured.dot(&u));
     let square = angle * angle;
     let sinc = series::sinc(square);
@@ -92,27 +93,27 @@ fn tilts_of(direction: &Vector3<f64>) -> [f64; 2] {
     [turn.x, turn.y]
 }
 
-pub(crate) const ROW: Row = Row {
+pub(crate) const ROW: FunctionRow = FunctionRow {
     function: &DIRECTION,
-    columns: &[Columns {
+    columns: &[MeasurementColumns {
         numbers: &["tilt_x", "tilt_y"],
         places: &["direction"],
         word: None,
-        from: From::Numbers { above_zero: false },
+        from: FormCriterion::Numbers { above_zero: false },
         of: |numbers| Measurement::tilts([numbers[0], numbers[1]]),
-        numbers_of: |measurement| Some(tilts_of(&seen(measurement.values())).to_vec()),
+        numbers_of: |measurement| Some(tilts_of(&direction_of(measurement.values())).to_vec()),
     }],
     sessions: &[GRAVITY],
 };
 
-const GRAVITY: Session = Session {
+const GRAVITY: SessionTraits = SessionTraits {
     word: "direction",
     plural: Some("directions"),
     help: "The direction of gravity, as of an inclinometer",
     function: &DIRECTION,
     places: &["gravity"],
-    stands: Stands::Upward,
-    drawn: Draw::Seen(|target, drawn| {
+    stands: StationLayout::Upward,
+    drawn: MeasurementOrigin::Seen(|target, drawn| {
         let up = (rotation::exp(&drawn.turn) * target.rotation).row(2).transpose();
         Measurement::direction(&up)
     }),
@@ -121,9 +122,9 @@ const GRAVITY: Session = Session {
             # tilt_x, y   the tilts of the target about its own x and y, as an inclinometer with two axes shows them.\n",
 };
 
-impl Kind {
+impl SessionKind {
     /// The direction of gravity.
-    pub const DIRECTION: Kind = Kind::new(&GRAVITY);
+    pub const DIRECTION: SessionKind = SessionKind::new(&GRAVITY);
 }
 
 impl Measurement {

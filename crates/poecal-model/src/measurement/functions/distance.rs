@@ -1,14 +1,16 @@
 //! Distance of a point from the instrument's origin.
 
-use super::Row;
-use crate::measurement::columns::{Columns, From};
-use crate::measurement::session::{Draw, Kind, Session, Stands};
-use crate::measurement::{Channel, Channels, Clue, Device, Function, Kernel, Measurement, Quantity};
+use super::FunctionRow;
+use crate::measurement::columns::{FormCriterion, MeasurementColumns};
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
+use crate::measurement::{
+    Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
+};
 use poecal_arm::lie::Freedom;
 
 static CHANNELS: Channels = Channels::new(&[Channel { name: "distance", quantity: Quantity::Distance }]);
 
-const READ: Function = Function {
+const READ: MeasurementFunction = MeasurementFunction {
     name: "distance",
     plural: "distances",
     quantities: &[Quantity::Distance],
@@ -22,47 +24,48 @@ const READ: Function = Function {
     kernel: Kernel::Distance,
     device: Device::Anchor,
     device_freedom: |_| Freedom::PLACE,
-    clue: |[distance, ..]| Clue::Range(*distance),
-    ..Function::USUAL
+    clue: |[distance, ..]| InitialGuess::Range(*distance),
+    ..MeasurementFunction::USUAL
 };
 
 /// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It determines the position of its instrument, and not its orientation (theory.md §4
 /// (15a)).
-static DISTANCE: Function = READ;
+static DISTANCE: MeasurementFunction = READ;
 
 /// The same function with an unknown zero of the instrument's readings, so that only changes count: of an interferometer, of a sphere whose
 /// radius is unknown (theory.md §4 (15d)).
-static CHANGE: Function = Function { name: "distance change", zero_is_unknown: true, ..READ };
+static CHANGE: MeasurementFunction =
+    MeasurementFunction { name: "distance change", zero_is_unknown: true, ..READ };
 
-pub(crate) const ROW: Row = Row {
+pub(crate) const ROW: FunctionRow = FunctionRow {
     function: &DISTANCE,
-    columns: &[Columns {
+    columns: &[MeasurementColumns {
         numbers: &["distance"],
         places: &["anchor"],
         word: None,
-        from: From::Numbers { above_zero: true },
+        from: FormCriterion::Numbers { above_zero: true },
         of: |numbers| Measurement::distance(numbers[0]),
         numbers_of: |seen| Some(vec![seen.values()[0]]),
     }],
     sessions: &[ANCHORS, BALL_BAR],
 };
 
-pub(crate) const CHANGE_ROW: Row = Row {
+pub(crate) const CHANGE_ROW: FunctionRow = FunctionRow {
     function: &CHANGE,
     columns: &[
-        Columns {
+        MeasurementColumns {
             numbers: &["distance_change"],
             places: &["anchor"],
             word: None,
-            from: From::Numbers { above_zero: false },
+            from: FormCriterion::Numbers { above_zero: false },
             of: |numbers| Measurement::distance_change(numbers[0]),
             numbers_of: |seen| Some(vec![seen.values()[0]]).filter(|it| *it != [0.0]),
         },
-        Columns {
+        MeasurementColumns {
             numbers: &["radius"],
             places: &["sphere"],
             word: None,
-            from: From::Name { size: true },
+            from: FormCriterion::Name { size: true },
             of: |numbers| {
                 let is_known = numbers[0] > 0.0;
                 if is_known { Measurement::distance(numbers[0]) } else { Measurement::distance_change(0.0) }
@@ -73,37 +76,39 @@ pub(crate) const CHANGE_ROW: Row = Row {
     sessions: &[CHANGES, SPHERE],
 };
 
-const ANCHORS: Session = Session {
+const ANCHORS: SessionTraits = SessionTraits {
     word: "distance",
     plural: Some("distances"),
     help: "Distances from anchors, as of a draw-wire",
     function: &DISTANCE,
     places: &["wall", "floor", "door"],
-    stands: Stands::Around,
-    drawn: Draw::Seen(|target, drawn| Measurement::distance(target.translation.norm() + drawn.length.x)),
+    stands: StationLayout::Around,
+    drawn: MeasurementOrigin::Seen(|target, drawn| {
+        Measurement::distance(target.translation.norm() + drawn.length.x)
+    }),
     columns: &["anchor", "distance[mm]"],
     about: "# anchor      from where the distance was measured; three places or more tell most. Where they are is found.\n\
             # distance    from there to the target.\n",
 };
 
-const BALL_BAR: Session = Session {
+const BALL_BAR: SessionTraits = SessionTraits {
     word: "ball-bar",
     plural: Some("ball-bars"),
     help: "Distances between two configurations",
     places: &["pair"],
-    stands: Stands::Before,
+    stands: StationLayout::Before,
     columns: &["pair", "distance[mm]"],
     about: "# pair        two rows with the same name are one measurement, of two configurations; the second has the number.\n\
             # distance    of the target between the two.\n",
     ..ANCHORS
 };
 
-const CHANGES: Session = Session {
+const CHANGES: SessionTraits = SessionTraits {
     word: "distance-change",
     plural: Some("distance-changes"),
     help: "Changes of distances, as of an interferometer",
     function: &CHANGE,
-    drawn: Draw::Seen(|target, drawn| {
+    drawn: MeasurementOrigin::Seen(|target, drawn| {
         Measurement::distance_change(target.translation.norm() + drawn.length.x + drawn.zero_m)
     }),
     columns: &["anchor", "distance_change[mm]"],
@@ -115,14 +120,14 @@ const CHANGES: Session = Session {
 /// Radius of the simulated sphere, metres.
 const SPHERE_M: f64 = 0.05;
 
-const SPHERE: Session = Session {
+const SPHERE: SessionTraits = SessionTraits {
     word: "sphere",
     plural: Some("spheres"),
     help: "Points of spheres",
     function: &CHANGE,
     places: &["ball"],
-    stands: Stands::Within,
-    drawn: Draw::Touched(|drawn| {
+    stands: StationLayout::Within,
+    drawn: MeasurementOrigin::Touched(|drawn| {
         [Measurement::distance(SPHERE_M + drawn.length.x), Measurement::distance_change(0.0)]
     }),
     columns: &["sphere", "radius[mm]"],
@@ -130,15 +135,15 @@ const SPHERE: Session = Session {
             # radius      its radius, and that of the probe; leave it empty if it is unknown (then it is found too).\n",
 };
 
-impl Kind {
+impl SessionKind {
     /// Distances from three anchors.
-    pub const DISTANCE: Kind = Kind::new(&ANCHORS);
+    pub const DISTANCE: SessionKind = SessionKind::new(&ANCHORS);
     /// Distances of the tip between two configurations.
-    pub const BALL_BAR: Kind = Kind::new(&BALL_BAR);
+    pub const BALL_BAR: SessionKind = SessionKind::new(&BALL_BAR);
     /// Changes of the distances from three instruments.
-    pub const CHANGE: Kind = Kind::new(&CHANGES);
+    pub const CHANGE: SessionKind = SessionKind::new(&CHANGES);
     /// Points of a sphere.
-    pub const SPHERE: Kind = Kind::new(&SPHERE);
+    pub const SPHERE: SessionKind = SessionKind::new(&SPHERE);
 }
 
 impl Measurement {

@@ -2,11 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::Row;
+use super::FunctionRow;
 use super::direction::{TILTS, tilts_between, turned_by};
-use crate::measurement::columns::{Columns, From};
-use crate::measurement::session::{Draw, Kind, Session, Stands};
-use crate::measurement::{Channel, Channels, Clue, Device, Function, Measurement, Quantity, Values};
+use crate::measurement::columns::{FormCriterion, MeasurementColumns};
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
+use crate::measurement::{
+    Channel, Channels, Device, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity,
+};
 use poecal_arm::lie::Freedom;
 
 static CHANNELS: Channels =
@@ -15,7 +17,7 @@ static CHANNELS: Channels =
 /// A face of the target, across one of its axes, flush on a plane, the device's xy: the height of the target and two tilts, all zero,
 /// theory.md §4 (15c) and (16b). Only height and tilts of both are determined. After the height, the values are the plane's z in the target's
 /// axes: an axis of the target, forward or backward.
-static FLUSH: Function = Function {
+static FLUSH: MeasurementFunction = MeasurementFunction {
     name: "flush face",
     plural: "flush faces",
     quantities: &[Quantity::Height, Quantity::Tilt],
@@ -35,35 +37,39 @@ static FLUSH: Function = Function {
         let axis = (0..3).find(|&k| values[1 + k].abs() == 1.0);
         axis.map_or(Freedom::FRAME, Freedom::plane)
     },
-    clue: |values| Clue::Height { point: Vector3::zeros(), height: values[0], up: Some(normal(values)) },
-    ..Function::USUAL
+    clue: |values| InitialGuess::Height {
+        point: Vector3::zeros(),
+        height: values[0],
+        up: Some(normal(values)),
+    },
+    ..MeasurementFunction::USUAL
 };
 
-fn normal(values: &Values) -> Vector3<f64> {
+fn normal(values: &MeasuredValues) -> Vector3<f64> {
     Vector3::new(values[1], values[2], values[3])
 }
 
-pub(crate) const ROW: Row = Row {
+pub(crate) const ROW: FunctionRow = FunctionRow {
     function: &FLUSH,
-    columns: &[Columns {
+    columns: &[MeasurementColumns {
         numbers: &["height"],
         places: &["plane"],
         word: Some(("contact", "flush")),
-        from: From::Name { size: false },
+        from: FormCriterion::Name { size: false },
         of: |numbers| Measurement::flush(numbers[0], &Vector3::z()),
         numbers_of: |seen| Some(vec![seen.values()[0]]),
     }],
     sessions: &[FACES],
 };
 
-const FACES: Session = Session {
+const FACES: SessionTraits = SessionTraits {
     word: "flush",
     plural: Some("flush"),
     help: "A face that lies flush on planes",
     function: &FLUSH,
     places: &["table", "side", "front"],
-    stands: Stands::Within,
-    drawn: Draw::Touched(|drawn| {
+    stands: StationLayout::Within,
+    drawn: MeasurementOrigin::Touched(|drawn| {
         let normal = super::direction::of_tilts([drawn.turn.x, drawn.turn.y]);
         [Measurement::flush(drawn.length.x, &normal), Measurement::flush(0.0, &Vector3::z())]
     }),
@@ -72,9 +78,9 @@ const FACES: Session = Session {
             # contact     flush, or point where a point touches it.\n",
 };
 
-impl Kind {
+impl SessionKind {
     /// A face that lies flush on one of three planes.
-    pub const FLUSH: Kind = Kind::new(&FACES);
+    pub const FLUSH: SessionKind = SessionKind::new(&FACES);
 }
 
 impl Measurement {

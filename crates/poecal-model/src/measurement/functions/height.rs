@@ -2,17 +2,19 @@
 
 use nalgebra::Vector3;
 
-use super::Row;
-use crate::measurement::columns::{Columns, From};
-use crate::measurement::session::{Draw, Kind, Session, Stands};
-use crate::measurement::{Channel, Channels, Clue, Device, Function, Kernel, Measurement, Quantity};
+use super::FunctionRow;
+use crate::measurement::columns::{FormCriterion, MeasurementColumns};
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
+use crate::measurement::{
+    Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
+};
 use poecal_arm::lie::Freedom;
 
 static CHANNELS: Channels = Channels::new(&[Channel { name: "height", quantity: Quantity::Height }]);
 
 /// Height of a target over a plane, the device's xy, `e = h - p_z`: zero for a probe in contact, the reading of a dial gauge that looks
 /// along z. Only height and tilts of the device are determined (theory.md §4 (15c)).
-static HEIGHT: Function = Function {
+static HEIGHT: MeasurementFunction = MeasurementFunction {
     name: "height",
     plural: "heights",
     quantities: &[Quantity::Height],
@@ -24,31 +26,31 @@ static HEIGHT: Function = Function {
     kernel: Kernel::Height,
     device: Device::Plane,
     device_freedom: |_| Freedom::plane(2),
-    clue: |[height, ..]| Clue::Height { point: Vector3::zeros(), height: *height, up: None },
-    ..Function::USUAL
+    clue: |[height, ..]| InitialGuess::Height { point: Vector3::zeros(), height: *height, up: None },
+    ..MeasurementFunction::USUAL
 };
 
-pub(crate) const ROW: Row = Row {
+pub(crate) const ROW: FunctionRow = FunctionRow {
     function: &HEIGHT,
-    columns: &[Columns {
+    columns: &[MeasurementColumns {
         numbers: &["height"],
         places: &["plane"],
         word: Some(("contact", "point")),
-        from: From::Name { size: false },
+        from: FormCriterion::Name { size: false },
         of: |numbers| Measurement::height(numbers[0]),
         numbers_of: |seen| Some(vec![seen.values()[0]]),
     }],
     sessions: &[PLANES, HEIGHTS],
 };
 
-const PLANES: Session = Session {
+const PLANES: SessionTraits = SessionTraits {
     word: "plane",
     plural: Some("planes"),
     help: "Points of planes",
     function: &HEIGHT,
     places: &["table", "side", "front"],
-    stands: Stands::Within,
-    drawn: Draw::Touched(|drawn| [drawn.length.x, 0.0].map(Measurement::height)),
+    stands: StationLayout::Within,
+    drawn: MeasurementOrigin::Touched(|drawn| [drawn.length.x, 0.0].map(Measurement::height)),
     columns: &["plane", "contact", "height[mm]"],
     about: "# plane       the plane that is touched. Where it is is found.\n\
             # contact     point, or flush where a face lies on it.\n\
@@ -58,22 +60,22 @@ const PLANES: Session = Session {
 /// Range of the simulated gauge, metres.
 const GAUGE_M: f64 = 0.02;
 
-const HEIGHTS: Session = Session {
+const HEIGHTS: SessionTraits = SessionTraits {
     word: "height",
     plural: Some("heights"),
     help: "Heights over planes, as of a dial gauge",
-    drawn: Draw::Touched(|drawn| {
+    drawn: MeasurementOrigin::Touched(|drawn| {
         let height = (drawn.uniform)() * GAUGE_M;
         [height + drawn.length.x, height].map(Measurement::height)
     }),
     ..PLANES
 };
 
-impl Kind {
+impl SessionKind {
     /// Points of three planes.
-    pub const PLANE: Kind = Kind::new(&PLANES);
+    pub const PLANE: SessionKind = SessionKind::new(&PLANES);
     /// Heights over three planes.
-    pub const HEIGHT: Kind = Kind::new(&HEIGHTS);
+    pub const HEIGHT: SessionKind = SessionKind::new(&HEIGHTS);
 }
 
 impl Measurement {

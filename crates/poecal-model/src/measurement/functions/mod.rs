@@ -9,16 +9,16 @@ mod point;
 mod pose;
 mod socket;
 
-use super::{Columns, Function, Kind, Quantity, Session};
+use super::{MeasurementColumns, MeasurementFunction, Quantity, SessionKind, SessionTraits};
 
 /// Properties of a function: a row of [`FUNCTIONS`].
-pub struct Row {
+pub struct FunctionRow {
     /// The function.
-    pub function: &'static Function,
+    pub function: &'static MeasurementFunction,
     /// Forms in files; empty for a function in the columns of positions and orientations.
-    pub columns: &'static [Columns],
+    pub columns: &'static [MeasurementColumns],
     /// Sessions of it.
-    pub sessions: &'static [Session],
+    pub sessions: &'static [SessionTraits],
 }
 
 /// All measured functions. A new sensor is a file of this folder, and its row here.
@@ -28,7 +28,7 @@ pub struct Row {
 /// let names: Vec<&str> = FUNCTIONS.iter().map(|row| row.function.name).collect();
 /// assert!(names.contains(&"distance"));
 /// ```
-pub static FUNCTIONS: [Row; 9] = [
+pub static FUNCTIONS: [FunctionRow; 9] = [
     pose::ROW,
     point::ROW,
     components::ROW,
@@ -40,20 +40,20 @@ pub static FUNCTIONS: [Row; 9] = [
     direction::ROW,
 ];
 
-impl Kind {
+impl SessionKind {
     /// All kinds, in the order of [`FUNCTIONS`].
     #[must_use]
-    pub fn all() -> Vec<Kind> {
-        FUNCTIONS.iter().flat_map(|row| row.sessions).map(Kind::new).collect()
+    pub fn all() -> Vec<SessionKind> {
+        FUNCTIONS.iter().flat_map(|row| row.sessions).map(SessionKind::new).collect()
     }
 }
 
 /// The function with a name.
-pub(crate) fn named(name: &str) -> Option<&'static Function> {
+pub(crate) fn find_by_name(name: &str) -> Option<&'static MeasurementFunction> {
     FUNCTIONS.iter().map(|row| row.function).find(|it| it.name == name)
 }
 
 /// Function that measures these quantities and no others, the plainest if there are several.
-pub fn measuring(quantities: &[Quantity]) -> Option<&'static Function> {
+pub fn find_by_quantities(quantities: &[Quantity]) -> Option<&'static MeasurementFunction> {
     FUNCTIONS.iter().map(|row| row.function).find(|it| it.quantities == quantities)
 }

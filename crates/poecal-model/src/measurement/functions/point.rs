@@ -2,9 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::Row;
-use crate::measurement::session::{Draw, Kind, Session, Stands};
-use crate::measurement::{Channel, Channels, Clue, Function, Kernel, Measurement, Quantity};
+use super::FunctionRow;
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
+use crate::measurement::{
+    Channel, Channels, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
+};
 
 /// Channels of a position.
 pub(crate) const XYZ: [Channel; 3] = [
@@ -16,7 +18,7 @@ pub(crate) const XYZ: [Channel; 3] = [
 static POSITION: Channels = Channels::new(&XYZ);
 
 /// Measured position y of a target point, `e = y - p`, `S = [I 0]` in target-centred form (theory.md §4 (15)).
-pub(crate) static POINT: Function = Function {
+pub(crate) static POINT: MeasurementFunction = MeasurementFunction {
     name: "point",
     plural: "points",
     quantities: &[Quantity::Position],
@@ -33,27 +35,27 @@ pub(crate) static POINT: Function = Function {
     is_wrench: true,
     lengths: 3,
     kernel: Kernel::Place,
-    clue: |[x, y, z, ..]| Clue::Place([Some(*x), Some(*y), Some(*z)]),
-    ..Function::USUAL
+    clue: |[x, y, z, ..]| InitialGuess::Place([Some(*x), Some(*y), Some(*z)]),
+    ..MeasurementFunction::USUAL
 };
 
-pub(crate) const ROW: Row = Row { function: &POINT, columns: &[], sessions: &[POINTS] };
+pub(crate) const ROW: FunctionRow = FunctionRow { function: &POINT, columns: &[], sessions: &[POINTS] };
 
-const POINTS: Session = Session {
+const POINTS: SessionTraits = SessionTraits {
     word: "point",
     plural: Some("points"),
     help: "Positions of a target, as a laser tracker sees them",
     function: &POINT,
     places: &[""],
-    stands: Stands::Anywhere,
-    drawn: Draw::Seen(|target, drawn| Measurement::point(target.translation + drawn.length)),
+    stands: StationLayout::Anywhere,
+    drawn: MeasurementOrigin::Seen(|target, drawn| Measurement::point(target.translation + drawn.length)),
     columns: &[],
     about: "",
 };
 
-impl Kind {
+impl SessionKind {
     /// Positions of the tip.
-    pub const POINT: Kind = Kind::new(&POINTS);
+    pub const POINT: SessionKind = SessionKind::new(&POINTS);
 }
 
 impl Measurement {

@@ -2,10 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Row;
+use super::FunctionRow;
 use super::point::XYZ;
-use crate::measurement::session::{Draw, Drawn, Kind, Session, Stands};
-use crate::measurement::{Channel, Channels, Clue, Function, Kernel, Measurement, Quantity, Values};
+use crate::measurement::session::{
+    MeasurementOrigin, RandomDraws, SessionKind, SessionTraits, StationLayout,
+};
+use crate::measurement::{
+    Channel, Channels, InitialGuess, Kernel, MeasuredValues, Measurement, MeasurementFunction, Quantity,
+};
 use poecal_arm::lie::{Freedom, Pose, hat, rotation, series};
 
 /// Channels of a pose: position, then rotation vector.
@@ -20,7 +24,7 @@ static FRAME: Channels = Channels::new(&[
 
 /// Measured frame, `e = [y - p; log(Y Rᵀ)]` at the target and in the device's axes (theory.md §4 (16)). The rotation rows of the sensitivity
 /// are `J_r(r)⁻¹`, exact also for large residuals `r = log(Y Rᵀ)`.
-static POSE: Function = Function {
+static POSE: MeasurementFunction = MeasurementFunction {
     name: "pose",
     plural: "poses",
     quantities: &[Quantity::Position, Quantity::Rotation],
@@ -48,39 +52,40 @@ static POSE: Function = Function {
     lengths: 3,
     kernel: Kernel::Pose,
     target_freedom: |_| Freedom::FRAME,
-    clue: |values| Clue::Frame(frame(values)),
-    ..Function::USUAL
+    clue: |values| InitialGuess::Frame(frame(values)),
+    ..MeasurementFunction::USUAL
 };
 
 #[inline]
-fn frame(values: &Values) -> Pose {
+fn frame(values: &MeasuredValues) -> Pose {
     let [x, y, z, columns @ ..] = values;
     Pose::new(Matrix3::from_column_slice(columns), Vector3::new(*x, *y, *z))
 }
 
-pub(crate) const ROW: Row = Row { function: &POSE, columns: &[], sessions: &[POSES, MIXED, RELATIVE] };
+pub(crate) const ROW: FunctionRow =
+    FunctionRow { function: &POSE, columns: &[], sessions: &[POSES, MIXED, RELATIVE] };
 
-const POSES: Session = Session {
+const POSES: SessionTraits = SessionTraits {
     word: "pose",
     plural: Some("poses"),
     help: "Positions and orientations",
     function: &POSE,
     places: &[""],
-    stands: Stands::Anywhere,
-    drawn: Draw::Seen(|target, drawn| noisy(target, drawn.length, drawn)),
+    stands: StationLayout::Anywhere,
+    drawn: MeasurementOrigin::Seen(|target, drawn| add_noise(target, drawn.length, drawn)),
     columns: &[],
     about: "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last). Instead, name the columns\n\
             #             rx,ry,rz[deg] for a rotation vector, or roll,pitch,yaw[deg] for turns about the fixed x, then y, then z.\n",
 };
 
-const MIXED: Session = Session {
+const MIXED: SessionTraits = SessionTraits {
     word: "mixed",
     plural: None,
     help: "Poses and points in turn",
-    drawn: Draw::Seen(|target, drawn| {
+    drawn: MeasurementOrigin::Seen(|target, drawn| {
         let is_pose = drawn.row.is_multiple_of(2);
         if is_pose {
-            noisy(target, drawn.length, drawn)
+            add_noise(target, drawn.length, drawn)
         } else {
             Measurement::point(target.translation + drawn.length)
         }
@@ -90,15 +95,15 @@ const MIXED: Session = Session {
     ..POSES
 };
 
-const RELATIVE: Session = Session {
+const RELATIVE: SessionTraits = SessionTraits {
     word: "relative",
     plural: Some("relative"),
     help: "Poses from one configuration in another",
     places: &["pair"],
-    stands: Stands::Before,
-    drawn: Draw::Seen(|target, drawn| {
+    stands: StationLayout::Before,
+    drawn: MeasurementOrigin::Seen(|target, drawn| {
         let shift = (drawn.lengths)();
-        noisy(target, shift, drawn)
+        add_noise(target, shift, drawn)
     }),
     columns: &["pair", "x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"],
     about: "# pair        two rows with the same name are one measurement, of two configurations; the second has the numbers.\n\
@@ -107,18 +112,18 @@ const RELATIVE: Session = Session {
 };
 
 /// A pose with noise.
-fn noisy(target: &Pose, shift: Vector3<f64>, drawn: &Drawn<'_>) -> Measurement {
+fn add_noise(target: &Pose, shift: Vector3<f64>, drawn: &RandomDraws<'_>) -> Measurement {
     let turn = rotation::exp(&drawn.turn);
     Measurement::of_pose(&Pose::new(turn * target.rotation, target.translation + shift))
 }
 
-impl Kind {
+impl SessionKind {
     /// Position and orientation of the tip.
-    pub const POSE: Kind = Kind::new(&POSES);
+    pub const POSE: SessionKind = SessionKind::new(&POSES);
     /// Poses and points in turn.
-    pub const MIXED: Kind = Kind::new(&MIXED);
+    pub const MIXED: SessionKind = SessionKind::new(&MIXED);
     /// Poses of the tip from one configuration in another.
-    pub const RELATIVE: Kind = Kind::new(&RELATIVE);
+    pub const RELATIVE: SessionKind = SessionKind::new(&RELATIVE);
 }
 
 impl Measurement {
@@ -152,7 +157,7 @@ impl Measurement {
 
     /// The same pose, or position, after a change; `None` if it is neither.
     #[must_use]
-    pub fn changed(&self, to: impl FnOnce(Pose) -> Pose) -> Option<Self> {
+    pub fn map_pose(&self, to: impl FnOnce(Pose) -> Pose) -> Option<Self> {
         match self.frame() {
             Some(pose) => Some(Measurement::of_pose(&to(pose))),
             None => {

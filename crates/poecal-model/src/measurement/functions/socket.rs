@@ -2,10 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::Row;
-use crate::measurement::columns::{Columns, From};
-use crate::measurement::session::{Draw, Kind, Session, Stands};
-use crate::measurement::{Channel, Channels, Clue, Device, Function, Kernel, Measurement, Quantity};
+use super::FunctionRow;
+use crate::measurement::columns::{FormCriterion, MeasurementColumns};
+use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
+use crate::measurement::{
+    Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
+};
 use poecal_arm::lie::Freedom;
 
 static CONTACT: Channels = Channels::new(&[
@@ -16,7 +18,7 @@ static CONTACT: Channels = Channels::new(&[
 
 /// A ball that rests in a socket, `e = y - p` with `y = 0`. The socket is a device with a position and without axes, and the ball's
 /// centre, the target, is at its origin (theory.md §4 (15b)). A fixed point that is touched in many configurations is the same.
-static SOCKET: Function = Function {
+static SOCKET: MeasurementFunction = MeasurementFunction {
     name: "contact",
     plural: "contacts",
     quantities: &[Quantity::Contact],
@@ -35,39 +37,39 @@ static SOCKET: Function = Function {
     kernel: Kernel::Place,
     device: Device::Socket,
     device_freedom: |_| Freedom::PLACE,
-    clue: |_| Clue::Middle,
-    ..Function::USUAL
+    clue: |_| InitialGuess::Middle,
+    ..MeasurementFunction::USUAL
 };
 
-pub(crate) const ROW: Row = Row {
+pub(crate) const ROW: FunctionRow = FunctionRow {
     function: &SOCKET,
-    columns: &[Columns {
+    columns: &[MeasurementColumns {
         numbers: &[],
         places: &["place", "socket"],
         word: None,
-        from: From::Name { size: false },
+        from: FormCriterion::Name { size: false },
         of: |_| Measurement::socket(Vector3::zeros()),
         numbers_of: |_| Some(Vec::new()),
     }],
     sessions: &[SOCKETS],
 };
 
-const SOCKETS: Session = Session {
+const SOCKETS: SessionTraits = SessionTraits {
     word: "socket",
     plural: Some("sockets"),
     help: "A ball in sockets, or a fixed point touched in many ways",
     function: &SOCKET,
     places: &["left", "right"],
-    stands: Stands::InARow,
-    drawn: Draw::Touched(|drawn| [drawn.length, Vector3::zeros()].map(Measurement::socket)),
+    stands: StationLayout::InARow,
+    drawn: MeasurementOrigin::Touched(|drawn| [drawn.length, Vector3::zeros()].map(Measurement::socket)),
     columns: &["place", "socket"],
     about: "# place       where the sockets stood; another name whenever they were moved.\n\
             # socket      the socket in which the ball is, or the fixed point that is touched.\n",
 };
 
-impl Kind {
+impl SessionKind {
     /// A ball in one of two sockets.
-    pub const SOCKET: Kind = Kind::new(&SOCKETS);
+    pub const SOCKET: SessionKind = SessionKind::new(&SOCKETS);
 }
 
 impl Measurement {

@@ -7,18 +7,20 @@ pub(crate) use self::by_joint::by_joint;
 
 use maud::{Markup, html};
 
-use crate::page::data::{Drawn, place, rounded};
-use crate::page::lead::{Lead, component_words, sign};
-use crate::plot::{Axis, Graph, Scale, Shape, Side, Spots, normal_quantile, quantile};
+use crate::page::data::{DrawnRow, place, round_for_picture};
+use crate::page::leading_error::{LeadingError, component_words, sign};
+use crate::plot::{
+    AxisScale, DotSeries, Graph, PlotAxis, PlotShape, VerticalAxis, normal_quantile, quantile,
+};
 use crate::table::number;
 use poecal_results::residuals::{ResidualRow, Residuals};
 
 /// Rows from which on dots are small.
 const MANY: usize = 800;
 /// A class of drawn elements with its meaning.
-pub(crate) type Key = (&'static str, &'static str);
+pub(crate) type LegendKey = (&'static str, &'static str);
 /// Sets of rows, and the additional width (px) of the element behind suspected ones.
-const SETS: [Key; 3] = [("alarm", "suspected"), ("s0", "fitted"), ("s1", "held out")];
+const SETS: [LegendKey; 3] = [("alarm", "suspected"), ("s0", "fitted"), ("s1", "held out")];
 const AROUND: u8 = 6;
 /// Points of a normal plot at most.
 const NORMAL_POINTS: usize = 800;
@@ -41,7 +43,7 @@ pub(crate) fn chart(name: &str, title: &str, caption: &str, drawing: &Markup) ->
 }
 
 /// The keys of these classes.
-pub(crate) fn keys(keys: &[Key]) -> Markup {
+pub(crate) fn keys(keys: &[LegendKey]) -> Markup {
     html! {
         ul.keys { @for (class, words) in keys { li { i.(class) {} (words) } } }
     }
@@ -60,47 +62,47 @@ pub(crate) fn with_unit(value: f64, unit: &str) -> String {
 }
 
 /// An axis from the least to the largest of some values, which includes zero if `from_zero`.
-fn axis(title: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+fn axis(title: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> PlotAxis {
     let range = values.filter(|it| it.is_finite()).fold(None, |range: Option<[f64; 2]>, it| {
         let [low, high] = range.unwrap_or([it, it]);
         Some([low.min(it), high.max(it)])
     });
     let zero = from_zero.then_some(0.0);
     let includes: Vec<f64> = range.into_iter().flatten().chain(zero).collect();
-    Axis::new(title, Scale::Close).including(&includes)
+    PlotAxis::new(title, AxisScale::Close).with_values(&includes)
 }
 
 /// The drawn rows of a calibration, and the reported error of each.
 pub(crate) struct Charts<'a> {
     pub(crate) residuals: &'a Residuals,
-    pub(crate) rows: &'a [Drawn],
-    pub(crate) lead: Lead,
+    pub(crate) rows: &'a [DrawnRow],
+    pub(crate) lead: LeadingError,
 }
 
 impl<'a> Charts<'a> {
-    pub(crate) fn new(residuals: &'a Residuals, rows: &'a [Drawn]) -> Self {
-        Charts { residuals, rows, lead: Lead::from_residuals(residuals) }
+    pub(crate) fn new(residuals: &'a Residuals, rows: &'a [DrawnRow]) -> Self {
+        Charts { residuals, rows, lead: LeadingError::from_residuals(residuals) }
     }
 
-    fn row(&self, drawn: &Drawn) -> Option<&ResidualRow> {
+    fn row(&self, drawn: &DrawnRow) -> Option<&ResidualRow> {
         self.residuals.rows().get(drawn.index)
     }
 
-    pub(crate) fn error(&self, drawn: &Drawn) -> Option<f64> {
-        self.row(drawn).and_then(|row| self.lead.error(row)).map(rounded)
+    pub(crate) fn error(&self, drawn: &DrawnRow) -> Option<f64> {
+        self.row(drawn).and_then(|row| self.lead.error(row)).map(round_for_picture)
     }
 
     /// Dots of fitted, held-out and suspected rows at some positions, and the keys of the sets that occur.
     pub(crate) fn by_set(
         &self,
-        rows: &[&Drawn],
-        place: impl Fn(&Drawn) -> Option<[f64; 2]>,
-    ) -> (Vec<Spots>, Vec<Key>) {
+        rows: &[&DrawnRow],
+        place: impl Fn(&DrawnRow) -> Option<[f64; 2]>,
+    ) -> (Vec<DotSeries>, Vec<LegendKey>) {
         let size = if self.rows.len() > MANY { 3 } else { 5 };
         let mut keys = Vec::new();
         let mut all = Vec::new();
         for (class, words) in SETS {
-            let is_of = |row: &Drawn| match class {
+            let is_of = |row: &DrawnRow| match class {
                 "s0" => !row.held_out,
                 "s1" => row.held_out,
                 _ => row.suspected,
@@ -111,7 +113,7 @@ impl<'a> Charts<'a> {
             if points.iter().any(Option::is_some) {
                 keys.push((class, words));
             }
-            all.push(Spots { class, size, points });
+            all.push(DotSeries { class, size, points });
         }
         // Suspected rows are drawn behind, and their key comes last.
         if keys.first().is_some_and(|it| it.0 == "alarm") {
@@ -122,27 +124,28 @@ impl<'a> Charts<'a> {
 
     /// The error of each row in the order read.
     pub(crate) fn by_row(&self) -> Markup {
-        let rows: Vec<&Drawn> = self.rows.iter().collect();
-        let number = |row: &Drawn| (row.index + 1) as f64;
+        let rows: Vec<&DrawnRow> = self.rows.iter().collect();
+        let number = |row: &DrawnRow| (row.index + 1) as f64;
         let (dots, found) = self.by_set(&rows, |row| Some([number(row), self.error(row)?]));
-        let larger = |a: &&&Drawn, b: &&&Drawn| {
+        let larger = |a: &&&DrawnRow, b: &&&DrawnRow| {
             self.error(a)
                 .unwrap_or_default()
                 .total_cmp(&self.error(b).unwrap_or_default())
                 .then(b.index.cmp(&a.index))
         };
-        let largest = rows.iter().max_by(larger).map_or_else(String::new, |row| self.told(row));
+        let largest = rows.iter().max_by(larger).map_or_else(String::new, |row| self.describe_row(row));
         let (name, unit) = (self.lead.name(), self.lead.unit());
         let spoken =
             format!("Error of {name} in {} rows in the order read; the largest is {largest}.", rows.len());
         let y = axis(&format!("{name} error, {unit}"), rows.iter().filter_map(|row| self.error(row)), true);
         let x = axis("row, in the order read", rows.iter().map(|row| number(row)), false).in_steps(12.0);
-        let graph = Graph { x, size: WIDE, dots, sides: vec![Side { y, spoken, shapes: Vec::new() }] };
+        let graph =
+            Graph { x, size: WIDE, dots, sides: vec![VerticalAxis { y, spoken, shapes: Vec::new() }] };
         html! { (keys(&found)) (graph.svg()) (readout()) }
     }
 
     /// A row in words.
-    fn told(&self, row: &Drawn) -> String {
+    fn describe_row(&self, row: &DrawnRow) -> String {
         let set = if row.held_out { "held out" } else { "fitted" };
         let suspected = if row.suspected { ", suspected" } else { "" };
         let error = with_unit(self.error(row).unwrap_or(f64::NAN), self.lead.unit());
@@ -151,13 +154,13 @@ impl<'a> Charts<'a> {
 
     /// Each component of each quantity: its name, its unit, its index among the columns of the page's data, and the values of some rows.
     pub(crate) fn components(&self) -> Vec<Component> {
-        let measured = self.residuals.measured().into_iter().enumerate();
+        let measured = self.residuals.measured_quantities().into_iter().enumerate();
         let all =
             measured.flat_map(|(at, quantity)| (0..quantity.components()).map(move |k| (at, quantity, k)));
         let component = |(at, quantity, k): (usize, _, usize)| {
-            let value = |drawn: &Drawn| {
+            let value = |drawn: &DrawnRow| {
                 let residual = self.row(drawn)?.errors.get(quantity)?.residual().get(k).copied();
-                residual.filter(|it| !it.is_nan()).map(rounded)
+                residual.filter(|it| !it.is_nan()).map(round_for_picture)
             };
             Component {
                 name: component_words(quantity, k),
@@ -171,11 +174,11 @@ impl<'a> Charts<'a> {
 
     /// The components of the residuals in the order read.
     pub(crate) fn by_component(&self) -> Markup {
-        let few: Vec<&Drawn> = self.rows.iter().filter(|row| row.few).collect();
+        let few: Vec<&DrawnRow> = self.rows.iter().filter(|row| row.few).collect();
         let mut all_keys = Vec::new();
         let mut cells = Vec::new();
         for Component { name, unit, values, .. } in self.components() {
-            let value = |row: &Drawn| values.get(row.at).copied().flatten();
+            let value = |row: &DrawnRow| values.get(row.at).copied().flatten();
             let (dots, found) = self.by_set(&few, |row| Some([(row.index + 1) as f64, value(row)?]));
             if found.len() > all_keys.len() {
                 all_keys = found;
@@ -185,7 +188,7 @@ impl<'a> Charts<'a> {
             let spoken = format!(
                 "Residuals of {name} of each row in the order read; the table below has their means and spreads."
             );
-            let sides = vec![Side { y, spoken, shapes: Vec::new() }];
+            let sides = vec![VerticalAxis { y, spoken, shapes: Vec::new() }];
             let graph = Graph { x, size: CELL, dots, sides };
             cells.push(html! { div.cell data-few { p.name { (name) } (graph.svg()) } });
         }
@@ -213,7 +216,7 @@ impl<'a> Charts<'a> {
             sets.iter().zip([("s0 bars", ("s0 box", "fitted")), ("s1 line", ("s1 line", "held out"))])
         {
             if !errors.is_empty() {
-                shapes.push(Shape { class, pieces: vec![outline(errors, width, count)] });
+                shapes.push(PlotShape { class, pieces: vec![outline(errors, width, count)] });
                 found.push(key);
             }
         }
@@ -221,12 +224,14 @@ impl<'a> Charts<'a> {
         let (name, unit) = (self.lead.name(), self.lead.unit());
         let y = axis("share of the rows, %", shares, true);
         let left = if beyond > 0 { format!(" ({beyond} rows beyond are not drawn)") } else { String::new() };
-        let x = Axis::new(&format!("{name} error, {unit}{left}"), Scale::Close).including(&[0.0, most]);
+        let x =
+            PlotAxis::new(&format!("{name} error, {unit}{left}"), AxisScale::Close).with_values(&[0.0, most]);
         let spoken = format!(
             "Histogram of errors of {name} in steps of {}; the tables of errors have mean, RMS, 95 % and largest.",
             with_unit(width, unit)
         );
-        let graph = Graph { x, size: HALF, dots: Vec::new(), sides: vec![Side { y, spoken, shapes }] };
+        let graph =
+            Graph { x, size: HALF, dots: Vec::new(), sides: vec![VerticalAxis { y, spoken, shapes }] };
         html! { (keys(&found)) (graph.svg()) }
     }
 
@@ -258,36 +263,41 @@ impl<'a> Charts<'a> {
         let ys = points.iter().flatten().chain(&line).map(|it| it[1]);
         let y = axis(&format!("component, {unit}"), ys, false);
         let x = axis("quantile of the normal distribution", ends.into_iter(), false);
-        let sides = vec![Side { y, spoken, shapes: vec![Shape { class: "soft line", pieces: vec![line] }] }];
-        let dots = vec![Spots { class: "s0", size: 4, points }];
+        let sides = vec![VerticalAxis {
+            y,
+            spoken,
+            shapes: vec![PlotShape { class: "soft line", pieces: vec![line] }],
+        }];
+        let dots = vec![DotSeries { class: "s0", size: 4, points }];
         let found = [("s0", "components of all rows"), ("soft line", "normal, through the quartiles")];
         html! { (keys(&found)) (Graph { x, size: HALF, dots, sides }.svg()) }
     }
 
     /// The fitted rows by their influence on the fit.
     pub(crate) fn leverage(&self) -> Markup {
-        let found = |row: &Drawn| {
+        let found = |row: &DrawnRow| {
             let judged = self.row(row)?.judged.filter(|_| !row.held_out)?;
-            let at = [judged.leverage, judged.studentized].map(rounded);
+            let at = [judged.leverage, judged.studentized].map(round_for_picture);
             at.iter().all(|it| it.is_finite()).then_some(at)
         };
-        let judged: Vec<(&Drawn, [f64; 2])> =
+        let judged: Vec<(&DrawnRow, [f64; 2])> =
             self.rows.iter().filter_map(|row| Some((row, found(row)?))).collect();
-        let larger = |a: &&(&Drawn, [f64; 2]), b: &&(&Drawn, [f64; 2])| a.1[0].total_cmp(&b.1[0]);
+        let larger = |a: &&(&DrawnRow, [f64; 2]), b: &&(&DrawnRow, [f64; 2])| a.1[0].total_cmp(&b.1[0]);
         let Some((largest, [most, _])) = judged.iter().max_by(larger) else {
             return html! { p.note { "The rows were not judged." } };
         };
-        let rows: Vec<&Drawn> = self.rows.iter().collect();
+        let rows: Vec<&DrawnRow> = self.rows.iter().collect();
         let (dots, keys_found) = self.by_set(&rows, found);
         let spoken = format!(
             "Studentised residual over leverage of {} fitted rows; the largest leverage, {}, is that of {}.",
             judged.len(),
             number(*most),
-            self.told(largest)
+            self.describe_row(largest)
         );
         let y = axis("studentised residual", judged.iter().map(|it| it.1[1]), true);
         let x = axis("leverage", judged.iter().map(|it| it.1[0]), false);
-        let graph = Graph { x, size: HALF, dots, sides: vec![Side { y, spoken, shapes: Vec::new() }] };
+        let graph =
+            Graph { x, size: HALF, dots, sides: vec![VerticalAxis { y, spoken, shapes: Vec::new() }] };
         html! { (keys(&keys_found)) (graph.svg()) (readout()) }
     }
 }

@@ -1,10 +1,10 @@
 //! A page of paper: complete in itself, without a script, on one page of A4.
 
-mod attested;
+mod certificate_sheet;
 mod visit;
 
-pub(crate) use attested::first_page;
-pub use attested::{Attest, certificate_page};
+pub(crate) use certificate_sheet::first_page;
+pub use certificate_sheet::{CertificateExtras, certificate_page};
 pub use visit::visit_page;
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::head;
 use poecal_numerics::text::visible_markup;
-use poecal_results::output::Page;
+use poecal_results::output::PagePieces;
 use poecal_results::record::Record;
 
 /// Files, limits and sentences of a kind that are listed at most.
@@ -56,7 +56,7 @@ main > .attested { border: 0; margin: 0; padding: 0; }
 const WIDE: usize = 50;
 
 /// The page with its only sheet.
-pub(crate) fn page(title: &str, version: &str, sheet: &Markup) -> Page {
+pub(crate) fn page(title: &str, version: &str, sheet: &Markup) -> PagePieces {
     // The page is the whole document: no heads and feet beside it.
     let head = head(title, &Record::default(), version);
     let body = html! {
@@ -67,7 +67,7 @@ pub(crate) fn page(title: &str, version: &str, sheet: &Markup) -> Page {
 }
 
 /// Entries of a record under their labels; one that is missing is `instead`, or else a blank line to write on.
-pub(crate) fn stated(
+pub(crate) fn record_entries(
     record: &Record,
     entries: &[(&'static str, &'static str)],
     instead: impl Fn(&str) -> Option<String>,

@@ -2,17 +2,17 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::super::html::{HtmlTable, coded, decimal};
+use super::super::html::{HtmlTable, code_markup, decimal};
 use super::{self as paper, LISTED};
-use crate::summary::{Leading, delivered, expected, judged_on};
+use crate::summary::{LeadingRows, delivered_name, expected_summary, judged_on};
 use crate::table::number;
-use crate::track::Track;
-use crate::track_entries::{SightEntry, sampled};
+use crate::track::TrackReport;
+use crate::track_entries::{SightEntry, sampled_range};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::JointKind;
-use poecal_numerics::text::visible;
+use poecal_numerics::text::escape_invisible;
 use poecal_results::calibration_file::CalibrationFile;
-use poecal_results::output::Page;
+use poecal_results::output::PagePieces;
 use poecal_results::record::Record;
 
 /// Joints that are listed at most.
@@ -52,41 +52,41 @@ const SESSION: [(&str, &str); 5] = [
 /// ```
 /// use poecal_calibrate::{CalibrationOptions, calibrate};
 /// use poecal_results::calibration_file::{CalibrationFile, Inputs};
-/// use poecal_model::simulate::{Kind, Simulation, elbow};
+/// use poecal_model::simulate::{SessionKind, Simulation, elbow};
 /// use poecal_results::track::{TrackOptions, track};
 /// use poecal_results::validation::ValidationInputs;
-/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT)?;
+/// let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
 /// let found = track(&file, &made.data, None, &TrackOptions::default())?;
-/// let told = poecal_report::Track::new(&found, &file.robot.name, ValidationInputs::default());
+/// let told = poecal_report::TrackReport::new(&found, &file.robot.name, ValidationInputs::default());
 /// let page = poecal_report::visit_page(&told, &file, Some("2026-11-29T10:20:30Z")).concat();
 /// assert!(page.contains("unchanged within") && page.contains("2026-11-29"));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
 #[must_use]
-pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> Page {
+pub fn visit_page(told: &TrackReport, file: &CalibrationFile, time: Option<&str>) -> PagePieces {
     let day = time.and_then(|time| time.split('T').next());
     let title = format!("Visit of {}", file.robot.name);
     // What stays as it was is that of the calibration; what belongs to a day is the visit's own.
-    let robot = file.record.clone().overridden(&told.record);
+    let robot = file.record.clone().override_with(&told.record);
     let instead = |key: &str| (key == "robot").then(|| file.robot.name.clone());
     let sheet = html! {
         style { (PreEscaped(paper::STYLE)) (PreEscaped(STYLE)) }
         section.attested.visit aria-label="Visit" {
             div.top { h1 { "Check of a calibrated robot" } }
-            (paper::stated(&robot, &STATED, instead))
+            (paper::record_entries(&robot, &STATED, instead))
             h2 { "Result" }
             p.found { b { (told.state_words()) } "by " (told.judged_words()) }
             (then_and_now(told, file, day))
             h2 { "Joints" }
             (joints(told, file))
             h2 { "To do" }
-            p { (coded(&told.to_do())) }
-            @for note in told.notes.iter().take(LISTED) { p { "Note: " (coded(&short(note))) } }
+            p { (code_markup(&told.to_do())) }
+            @for note in told.notes.iter().take(LISTED) { p { "Note: " (code_markup(&shorten_sentence(note))) } }
             h2 { "Files, SHA-256" }
             (paper::files(std::iter::once(&told.inputs.calibration).chain(&told.inputs.measurements), &told.inputs.sha256))
-            @if let Some(note) = &told.record.note { p { (short(note)) } }
+            @if let Some(note) = &told.record.note { p { (shorten_sentence(note)) } }
             (paper::hands("Checked by"))
         }
     };
@@ -94,7 +94,7 @@ pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> P
 }
 
 /// The calibration beside the visit.
-fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Markup {
+fn then_and_now(told: &TrackReport, file: &CalibrationFile, day: Option<&str>) -> Markup {
     let mut table =
         HtmlTable::new("The robot when it was calibrated, and in this visit", 3, &["", "then", "now"]);
     let text = |record: &Record, key: &str| {
@@ -105,17 +105,17 @@ fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Mark
         let now = text(&told.record, key).or(today);
         table.cells([label.to_owned(), text(&file.record, key).unwrap_or_default(), now.unwrap_or_default()]);
     }
-    let leading = Leading::from_calibration(file);
+    let leading = LeadingRows::from_calibration(file);
     let (set, then) = (leading.set, leading.models.last());
     let then = then.and_then(|(_, model, _)| model.get(Quantity::Position));
     let then = then.map(|it| format!("{} mm (RMS), on {} {}", number(it.rms), set.count, judged_on(file)));
     let now = format!("{} mm (RMS), on {} rows", number(told.error_mm), told.rows);
     table.cells([
-        format!("Error of the {} model", delivered(file)),
+        format!("Error of the {} model", delivered_name(file)),
         then.unwrap_or_else(|| "–".to_owned()),
         now,
     ]);
-    if let Some(found) = expected(file) {
+    if let Some(found) = expected_summary(file) {
         let words = format!("{} mm (RMS), 95 % below {} mm", number(found.error_mm), number(found.bound_mm));
         table.cells(["Expected error".to_owned(), words, String::new()]);
     }
@@ -130,18 +130,18 @@ fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Mark
 }
 
 /// Each joint with its measured ranges, and the shift of its zero.
-fn joints(told: &Track, file: &CalibrationFile) -> Markup {
+fn joints(told: &TrackReport, file: &CalibrationFile) -> Markup {
     let heads =
         ["joint", "measured then", "measured now", "smallest visible shift (95 %)", "shift of its zero"];
     let mut table = HtmlTable::new("Measured ranges, and shifts of zeros since the calibration", 1, &heads);
     for joint in told.joints.iter().take(MOST_JOINTS) {
         let then = file.coverage.iter().find(|it| it.joint == joint.joint);
         let slides = file.joints.iter().any(|it| it.name == joint.joint && it.kind == JointKind::Prismatic);
-        let then = then.map(|it| range(sampled(it, slides), joint.unit));
+        let then = then.map(|it| range(sampled_range(it, slides), joint.unit));
         let now = joint.sampled.map(|it| range(it, joint.unit));
         let none = || "–".to_owned();
         table.cells([
-            visible(&joint.joint).into_owned(),
+            escape_invisible(&joint.joint).into_owned(),
             then.unwrap_or_else(none),
             now.unwrap_or_else(none),
             joint.smallest.map_or_else(|| "not visible".to_owned(), |it| format!("{it:.3} {}", joint.unit)),
@@ -154,7 +154,7 @@ fn joints(told: &Track, file: &CalibrationFile) -> Markup {
         p {
             "Shift ± standard deviation, beside the result above."
             @if more > 0 { " " (more) " more joints by " code { "poecal track" } "." }
-            @for it in told.invisible.iter().take(LISTED) { " " (visible(&it.joint)) ": " (it.words) "." }
+            @for it in told.invisible.iter().take(LISTED) { " " (escape_invisible(&it.joint)) ": " (it.words) "." }
         }
     }
 }
@@ -172,7 +172,7 @@ fn shift_words(joint: &SightEntry) -> Option<String> {
 }
 
 /// A sentence, cut where it would take a part of the page.
-fn short(text: &str) -> String {
+fn shorten_sentence(text: &str) -> String {
     let mut out: String = text.chars().take(LONGEST).collect();
     if out.len() < text.len() {
         out.push('…');
