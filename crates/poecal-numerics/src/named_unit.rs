@@ -48,7 +48,7 @@ const METRE: NamedUnit = unit("m", Unit::Metre, (1.0, 1.0), "metre metres meter 
 const RADIAN: NamedUnit = unit("rad", Unit::Radian, (1.0, 1.0), "radian radians");
 const ONE: NamedUnit = unit("1", Unit::One, (1.0, 1.0), "");
 
-const UNITS: [NamedUnit; 12] = [
+const UNITS: [NamedUnit; 13] = [
     METRE,
     unit("cm", Unit::Metre, (1.0, 1e2), "centimetre centimetres centimeter centimeters"),
     unit("mm", Unit::Metre, (1.0, 1e3), "millimetre millimetres millimeter millimeters"),
@@ -61,6 +61,8 @@ const UNITS: [NamedUnit; 12] = [
     unit("deg", Unit::Radian, (PI / 180.0, 1.0), "degree degrees 度"),
     unit("arcmin", Unit::Radian, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
     unit("arcsec", Unit::Radian, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
+    // Counts of motors with encoders of 12 bits, 4096 in a turn.
+    unit("ticks", Unit::Radian, (PI / 2048.0, 1.0), "tick"),
     ONE,
 ];
 
@@ -206,12 +208,13 @@ mod tests {
             ("deg", turn(360.0)),
             ("arcmin", turn(360.0 * 60.0)),
             ("arcsec", turn(360.0 * 3600.0)),
+            ("ticks", turn(4096.0)),
             ("1", 1.0),
         ] {
             let unit = UNITS.into_iter().find(|unit| unit.symbol == symbol).unwrap();
             assert!((unit.to_si(1.0) / si - 1.0).abs() < 1e-15, "{symbol}");
         }
-        assert_eq!(UNITS.len(), 12);
+        assert_eq!(UNITS.len(), 13);
     }
 
     #[test]

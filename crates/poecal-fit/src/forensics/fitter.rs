@@ -214,6 +214,26 @@ impl<'a> Fitter<'a> {
         self.fit(data, registered, free, iterations)
     }
 
+    /// Fits a term of some joints together with all axes, which a prior keeps near nominal.
+    pub(crate) fn with_term_and_axes(
+        &self,
+        data: &Dataset,
+        registered: &Estimate,
+        (joints, term): (&[usize], Term),
+        tolerance: Tolerance,
+    ) -> (Estimate, Misfit) {
+        let prior = Prior::new(self.robot, tolerance, self.device_free);
+        let kinds = registered.kinds();
+        let axes = kinds.iter().enumerate();
+        let axes = axes.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
+        let terms = joints.iter().filter_map(|&joint| {
+            kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term }))
+        });
+        let free = axes.chain(terms).chain(self.devices(data, None)).collect();
+        Fitter { constrained: Some((prior, self.spread_m(data))), weight: 1.0, ..self.clone() }
+            .fit(data, registered, free, LONG)
+    }
+
     /// The unknown device frames, but for one that stays.
     fn devices(&self, data: &Dataset, held: Option<usize>) -> Vec<Parameter> {
         let rows = data.all_rows();

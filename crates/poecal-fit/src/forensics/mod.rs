@@ -21,13 +21,15 @@ mod targets;
 mod unnamed_targets;
 mod zero;
 
+pub(crate) use change::RowChange;
 pub use diagnosis::{Diagnosis, DiagnosisKind};
+pub(crate) use fitter::{Fitter, Misfit, subsample};
 
 use std::cell::LazyCell;
 
 use crate::state::{Estimate, sample_rows};
 use few_targets::FewTargets;
-use fitter::{Fitter, sample_of, subsample, take_rows};
+use fitter::{sample_of, take_rows};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use repeats::Repeats;

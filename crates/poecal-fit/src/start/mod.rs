@@ -12,6 +12,7 @@ mod placeless_devices;
 mod registration;
 mod robust;
 mod stations;
+mod zeros;
 
 pub(crate) use averaging::rotation_maximising;
 pub use averaging::{mean_rotation, rigid_motion};
@@ -32,3 +33,4 @@ pub use registration::{
 pub use robust::{register_robustly, row_distances};
 pub use stations::register;
 pub(crate) use stations::register_roughly;
+pub use zeros::{JointZeros, find_zeros};

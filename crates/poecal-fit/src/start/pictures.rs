@@ -102,8 +102,15 @@ fn turned_back(before: &Dataset, after: &Dataset) -> Vec<String> {
     )]
 }
 
+/// Takes the pose of each picture that its corners fit best.
+pub(super) fn take_first_poses(data: &mut Dataset) {
+    for at in 0..data.pictures.all.len() {
+        choose(data, at, |picture| picture.poses.first().copied());
+    }
+}
+
 /// The same pictures with the camera as the target, and the board as the instrument.
-fn in_hand(data: &Dataset) -> Dataset {
+pub(super) fn in_hand(data: &Dataset) -> Dataset {
     let mut found = data.clone();
     let rows: Vec<(usize, usize, usize)> =
         data.pictures.all.iter().map(|it| (it.row as usize, it.camera, it.board)).collect();
@@ -142,9 +149,7 @@ fn named_station(data: &mut Dataset, name: Option<&str>) -> usize {
 fn settle_poses(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
     let mut found = data.clone();
     let rows: Vec<u32> = data.pictures.all.iter().map(|it| it.row).collect();
-    for at in 0..found.pictures.all.len() {
-        choose(&mut found, at, |picture| picture.poses.first().copied());
-    }
+    take_first_poses(&mut found);
     let packed = PackedValues::from_dataset(robot, &found);
     let (mut best, mut result, mut used) = (f64::INFINITY, found.clone(), rows.clone());
     for _ in 0..ROUNDS {

@@ -6,6 +6,7 @@ pub(crate) mod joints;
 mod judging;
 pub(crate) mod labels;
 pub(crate) mod socket_distance;
+mod zeros;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,6 +35,7 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::{NamedLines, escape_invisible};
 use poecal_storage::document;
+use zeros::settle_zeros;
 
 /// Reads measurement files, joined in their order.
 ///
@@ -294,6 +296,9 @@ impl<'a> MeasurementReader<'a> {
         settle_faces(&mut found.data, self.robot);
         found.data.settle_pixels();
         refuse_wrong_boards(&found.data)?;
+        if self.map.motors.is_some() && self.options.controller.is_none() {
+            settle_zeros(&mut found, self.robot);
+        }
         let settled = settle_pictures(&mut found.data, self.robot);
         found.notes.extend(settled.notes);
         found.warnings.extend(settled.warnings);

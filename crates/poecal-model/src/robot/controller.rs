@@ -123,6 +123,14 @@ impl Controller {
         }
     }
 
+    /// The same with readings `sign · reading + zero`, radians and metres.
+    pub fn turn_and_shift(&mut self, signs: &[f64], zeros: &[Option<f64>]) {
+        for ((reading, sign), zero) in self.readings.iter_mut().zip(signs).zip(zeros) {
+            reading.columns.values_mut().for_each(|column| column.factor *= sign);
+            reading.offset = sign * reading.offset + zero.unwrap_or(0.0);
+        }
+    }
+
     /// True if each reading is one that the controller counts, of whatever name.
     #[must_use]
     pub fn is_plain(&self) -> bool {

@@ -58,6 +58,10 @@ impl<'a> Builder<'a> {
         let numbered = if kept.is_some() { None } else { match_numbered_columns(header, robot, map, &names) };
         let mut builder = Builder { header, map, readings, inputs: Vec::new(), used, numbered, missed };
         let default = ColumnSpec::default();
+        let motors = match &map.motors {
+            Some(motors) if kept.is_none() => motors.columns(header, robot, &map.path)?,
+            _ => BTreeMap::new(),
+        };
         let numbers = builder.numbered.clone().into_iter().flatten();
         let numbers: BTreeMap<String, ColumnSpec> = numbers
             .map(|(joint, column)| (joint, ColumnSpec { column: Some(column), ..ColumnSpec::default() }))
@@ -72,7 +76,12 @@ impl<'a> Builder<'a> {
                 builder.kept_input(reading, reading_quantity(robot, name), &purpose)?;
                 continue;
             }
-            let spec = map.joints.get(name).or_else(|| numbers.get(name)).unwrap_or(&default);
+            let spec = map
+                .joints
+                .get(name)
+                .or_else(|| motors.get(name))
+                .or_else(|| numbers.get(name))
+                .unwrap_or(&default);
             let found = builder.spec_input(name, spec, reading_quantity(robot, name), &purpose);
             found.map_err(|error| error.if_missing(MissingColumn::Joint))?;
         }

@@ -13,6 +13,7 @@ use super::super::mapping_values::{
 };
 use super::super::number::DecimalSign;
 use super::super::orientation::OrientationForm;
+use super::motors::Motors;
 use crate::FitWhere;
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::ThirdAxis;
@@ -28,6 +29,9 @@ use poecal_storage::source_text;
 pub struct ColumnMap {
     #[serde(skip)]
     pub(crate) path: PathBuf,
+    /// LeRobot's calibration of motors, in place of a mapping.
+    #[serde(skip)]
+    pub(crate) motors: Option<Motors>,
     #[serde(deserialize_with = "separator")]
     pub(crate) separator: Option<Separator>,
     #[serde(deserialize_with = "decimal_sign")]
@@ -134,28 +138,36 @@ pub(crate) struct TargetSpec {
 }
 
 impl ColumnMap {
-    /// Reads a mapping file.
+    /// Reads a mapping file, or LeRobot's calibration of motors.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if it cannot be read, else those of [`ColumnMap::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         ColumnMap::parse(
-            &source_text::read_up_to(path, "a column mapping (TOML)", ResourceLimit::Settings)?,
+            &source_text::read_up_to(
+                path,
+                "a column mapping (TOML, or LeRobot's JSON)",
+                ResourceLimit::Settings,
+            )?,
             path,
         )
     }
 
-    /// A mapping from its TOML text; `path` is its name in messages.
+    /// A mapping from its text; messages call it `path`.
     ///
     /// # Errors
-    /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, or has an unknown key or value.
+    /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML and no calibration of motors, or has an unknown key or value.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         ColumnMap::parse_at(text, path.as_ref())
     }
 
     /// Compiled once, and not for each kind of path.
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
+        if text.trim_start().starts_with('{') {
+            let motors = Some(Motors::parse(text, path)?);
+            return Ok(ColumnMap { motors, path: path.to_path_buf(), ..ColumnMap::default() });
+        }
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
             let mut message = error.message().replace('\n', "; ");
             if message.starts_with("unknown field `direction`") {

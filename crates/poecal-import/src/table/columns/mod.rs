@@ -8,5 +8,6 @@ pub(crate) mod controller_counts;
 mod makers_columns;
 pub(crate) mod mapping;
 pub(crate) mod mapping_values;
+pub(crate) mod motors;
 pub(crate) mod targets;
 pub(crate) mod turns;
