@@ -121,7 +121,8 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     let mut free = screw_axes(start.kinds());
     free.push(Parameter::TargetFrame(TargetFrame::new(0)));
     let mut generator = ChaCha8Rng::seed_from_u64(1);
-    let trials: Vec<Vec<Measurement>> = (0..1_000).map(|_| disturb_measurements(&made.data, &mut generator)).collect();
+    let trials: Vec<Vec<Measurement>> =
+        (0..1_000).map(|_| disturb_measurements(&made.data, &mut generator)).collect();
     let length_m = made.nominal.reach_m() / 3.0;
     bencher.bench_local(|| {
         let packed = PackedValues::new(&made.nominal, made.data.all_readings(), 6);

@@ -18,7 +18,9 @@ fn line(count: usize) -> Folder {
     );
     fs::create_dir(folder.path("inbox")).unwrap();
     for robot in 0..count {
-        folder.run_to_success(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
+        folder.run_to_success(&format!(
+            "simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"
+        ));
         folder.write(&format!("inbox/SN{robot}.csv"), folder.read(&format!("made{robot}/measurements.csv")));
     }
     folder

@@ -16,7 +16,10 @@ fn a_board_is_drawn_as_pdf_and_svg() {
     }
     let pdf = folder.read("board.pdf");
     assert!(pdf.starts_with("%PDF-") && pdf.contains("/MediaBox [0 0 595.27559 841.88976]"));
-    assert_eq!(folder.run_to_success(&format!("detect --print {SPEC} --paper letter --out board.SVG --quiet")), "");
+    assert_eq!(
+        folder.run_to_success(&format!("detect --print {SPEC} --paper letter --out board.SVG --quiet")),
+        ""
+    );
     assert!(folder.read("board.SVG").contains("width=\"215.9mm\" height=\"279.4mm\""));
 }
 
@@ -43,8 +46,9 @@ fn dots_and_tags_are_drawn_and_measured_too() {
         ),
     ] {
         let folder = Folder::new();
-        let out =
-            folder.run_to_success(&format!("detect --print {spec} --out board.pdf")).replace("\n              ", " ");
+        let out = folder
+            .run_to_success(&format!("detect --print {spec} --out board.pdf"))
+            .replace("\n              ", " ");
         assert!(out.contains(words) && folder.read("board.pdf").starts_with("%PDF-"), "{out}");
         folder.run_to_success(&format!("detect --print {spec} --out board.svg --quiet"));
         assert!(folder.read("board.svg").contains("check the rulers"));

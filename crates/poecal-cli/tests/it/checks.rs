@@ -117,7 +117,9 @@ fn the_history_gets_a_line_a_check() {
     let page = folder.read("autumn.html");
     assert!(page.contains("Checks of this calibration") && page.contains(lines[0]["time"].as_str().unwrap()));
     // A calibration again into the same folder keeps the history, which does not belong to the new calibration.
-    folder.run_to_success("calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet");
+    folder.run_to_success(
+        "calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet",
+    );
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 3);
     folder.run_to_success(&format!("{check} autumn.csv --refit device --quiet --report again.html"));
     assert!(!folder.read("again.html").contains("Checks of this calibration"));

@@ -69,8 +69,8 @@ fn training_figures_are_never_shown_without_the_word() {
         &Simulation { count: 25, noise_position_m: 6e-5, ..Simulation::default() },
     );
     for arguments in ["--validate other.csv", "--held-out 0", "--train-where stage=1", ""] {
-        let out =
-            folder.run_to_success(&format!("calibrate robot.urdf measurements.csv --force --verbose {arguments}"));
+        let out = folder
+            .run_to_success(&format!("calibrate robot.urdf measurements.csv --force --verbose {arguments}"));
         // Each block of figures begins with a row that names its set; the first block of a table is the training one.
         let mut set = "";
         for line in out.lines() {
@@ -95,7 +95,8 @@ fn training_figures_are_never_shown_without_the_word() {
         "{}",
         found.err
     );
-    let out = folder.run_to_success("validate poecal-out/calibration.json measurements.csv --refit device,tool");
+    let out =
+        folder.run_to_success("validate poecal-out/calibration.json measurements.csv --refit device,tool");
     assert!(out.contains("device frame and tool: fitted to these measurements, so training"), "{out}");
 }
 
@@ -125,7 +126,8 @@ fn what_is_held_out_can_be_said() {
     folder.run_to_success(&format!("{of_few} --held-out 0.3"));
     assert_eq!(calibration(&folder, "few/out").accuracy.held_out.unwrap().count, 6);
 
-    let out = folder.run_to_success("calibrate robot.urdf measurements.csv --train-where stage=1 --out stage");
+    let out =
+        folder.run_to_success("calibrate robot.urdf measurements.csv --train-where stage=1 --out stage");
     assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows, at most "), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
@@ -202,8 +204,9 @@ fn predictions_are_those_of_the_model() {
         assert!(predicted[6] >= 0.0);
     }
     // In the device's frame, predictions equal the measurements, except for the noise.
-    let out = folder
-        .run_to_success("predict poecal-out/calibration.json measurements.csv --output-frame device --out seen.csv");
+    let out = folder.run_to_success(
+        "predict poecal-out/calibration.json measurements.csv --output-frame device --out seen.csv",
+    );
     assert_eq!(out, "");
     for (row, predicted) in numbers(&folder.read("seen.csv"), 1).iter().enumerate() {
         let measured = data.observations[row].measurement.pose();
@@ -226,7 +229,9 @@ fn the_device_is_the_base_where_that_was_given() {
     folder.run_to_success("calibrate robot.urdf base.csv --device-frame base");
     assert_eq!(
         folder.run_to_success("predict poecal-out/calibration.json base.csv --output-frame device"),
-        folder.run_to_success("predict poecal-out/calibration.json base.csv --output-frame base --target measured")
+        folder.run_to_success(
+            "predict poecal-out/calibration.json base.csv --output-frame base --target measured"
+        )
     );
 }
 
@@ -261,7 +266,8 @@ fn check_says_what_it_understood() {
     assert_eq!(json["files"][0]["separator"], "semicolon");
     assert_eq!(json["sets"], serde_json::json!({"fit": 1, "held_out": 1, "unstated": 0}));
     assert_eq!(json["warnings"].as_array().unwrap().len(), 1);
-    let json: serde_json::Value = serde_json::from_str(&folder.run_to_success("check robot.urdf --json")).unwrap();
+    let json: serde_json::Value =
+        serde_json::from_str(&folder.run_to_success("check robot.urdf --json")).unwrap();
     assert_eq!((&json["sets"], &json["files"]), (&serde_json::Value::Null, &serde_json::json!([])));
 }
 

@@ -27,8 +27,9 @@ fn folder() -> Folder {
 #[test]
 fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     let folder = folder();
-    let told = folder
-        .run_to_success("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check");
+    let told = folder.run_to_success(
+        "compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check",
+    );
     assert!(told.starts_with("largest change: `joint"), "{told}");
     assert!(told.contains("\n3 rows corrected: without correction the tip would be off by "), "{told}");
     assert!(told.contains("checked from the written numbers: at most "), "{told}");
@@ -70,8 +71,9 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
 #[test]
 fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     let folder = folder();
-    let json = folder
-        .run_to_success("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json");
+    let json = folder.run_to_success(
+        "compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json",
+    );
     let found: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&found["rows"], &found["joints"][5]), (&3.into(), &"joint6".into()));
     assert!(found["left_m"]["value"].as_f64().unwrap() < 1e-9);
@@ -85,8 +87,9 @@ fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     assert_eq!((piped.code, piped.out), (0, written));
     // Without a calibration's findings there is nothing to correct.
     folder.write("same.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
-    let other =
-        folder.run_to_success("compensate --max-correction 20deg results/calibration.json same.csv --model calibrated");
+    let other = folder.run_to_success(
+        "compensate --max-correction 20deg results/calibration.json same.csv --model calibrated",
+    );
     assert_eq!(other.lines().count(), 2);
 }
 
@@ -242,13 +245,13 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
 fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
     let folder = folder();
     folder.write("rows.dat", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
-    let table =
-        folder.run_to_success("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
+    let table = folder
+        .run_to_success("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
     assert_eq!(table.lines().count(), 2);
     let program = "DEF p()\nPTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; {A1 1}\nEND\n";
     folder.write("p.txt", program);
-    let written =
-        folder.run_to_success("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
+    let written = folder
+        .run_to_success("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
     println!("{written}");
     assert!(
         written.starts_with("DEF p()\nPTP {A1 ")
@@ -261,7 +264,9 @@ fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
     );
     assert_eq!((piped.code, piped.out), (0, written));
     folder.write("p.src", program);
-    folder.run_to_success("compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet");
+    folder.run_to_success(
+        "compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet",
+    );
 }
 
 #[test]

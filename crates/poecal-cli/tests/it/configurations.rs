@@ -83,8 +83,8 @@ fn joints_go_by_name_and_unit_where_files_have_them() {
         let text = readings.iter().map(|it| it.to_radians().to_string()).collect::<Vec<_>>().join(", ");
         fs::write(folder.path(&format!("plain/{}", at + 1)), text).unwrap();
     }
-    let [named, plain] =
-        ["named", "plain"].map(|it| folder.run_to_success(&words("plan", &format!("--rows {it} --rows"), "--json")));
+    let [named, plain] = ["named", "plain"]
+        .map(|it| folder.run_to_success(&words("plan", &format!("--rows {it} --rows"), "--json")));
     let of = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap()["expected_error"].clone();
     let mean = |text: &str| of(text)["position_mean_mm"].as_f64().unwrap();
     println!("{} and {}", mean(&named), mean(&plain));

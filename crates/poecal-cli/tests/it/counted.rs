@@ -85,9 +85,12 @@ fn tables_are_read_and_written_as_the_controller_counts() {
     let found = numbers(&folder.run_to_success("predict results/calibration.json counted.csv"), 0);
     println!("predictions differ by up to {:.1e}", largest_difference(&found, &meant));
     assert!(largest_difference(&found, &meant) < 1e-9);
-    let plain =
-        numbers(&folder.run_to_success("compensate --max-correction 20deg plain/calibration.json plain.csv"), 0);
-    let made = folder.run_to_success("compensate --max-correction 20deg results/calibration.json counted.csv");
+    let plain = numbers(
+        &folder.run_to_success("compensate --max-correction 20deg plain/calibration.json plain.csv"),
+        0,
+    );
+    let made =
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json counted.csv");
     assert!(made.starts_with("A1,A2,A3,A4,A5,A6\n"), "{made}");
     let back: Vec<Vec<f64>> = numbers(&made, 0).iter().map(|it| uncount_values(it)).collect();
     println!("commands differ by up to {:.1e} deg", largest_difference(&back, &plain));
@@ -236,13 +239,14 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     assert_eq!(kept["controller"]["third_axis"], "level");
     folder.write("job.ls", program("ls", &targets().iter().map(|it| from_level(it)).collect::<Vec<_>>()));
     // The calibration whose readings are the model's, by a driver: here J3 is stated to count from the level.
-    let stated =
-        folder.run_to_success("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
+    let stated = folder
+        .run_to_success("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
     let by_map = folder.run_to_success("compensate --max-correction 20deg results/calibration.json job.ls");
     let apart = largest_difference(&joints("ls", &stated), &joints("ls", &by_map));
     assert!(apart < 3e-6, "{apart}");
     // The same mapping again has the same result.
-    let again = folder.run_to_success("validate results/calibration.json controller.csv --columns map.toml --json");
+    let again =
+        folder.run_to_success("validate results/calibration.json controller.csv --columns map.toml --json");
     let without = folder.run_to_success("validate results/calibration.json controller.csv --json");
     assert_eq!(again.replace(" --columns map.toml", ""), without);
     // Rows in which joint 2 hardly moves do not determine it.
@@ -277,8 +281,11 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     }
     assert_eq!(folder.listing(), before);
     assert!(
-        joints("ls", &folder.run_to_success("compensate --max-correction 20deg narrow.json job.ls --third-axis arm"))
-            .len()
+        joints(
+            "ls",
+            &folder.run_to_success("compensate --max-correction 20deg narrow.json job.ls --third-axis arm")
+        )
+        .len()
             == 10
     );
 }

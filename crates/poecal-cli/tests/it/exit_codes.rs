@@ -42,7 +42,9 @@ fn a_calibration_that_should_not_be_used_is_written_and_ends_with_1() {
 #[test]
 fn a_fit_that_did_not_converge_is_written_and_ends_with_1() {
     let folder = session(SessionKind::POINT);
-    folder.run_to_success("simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far");
+    folder.run_to_success(
+        "simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far",
+    );
     // Full steps of free screws and offsets, with hardly more numbers than unknowns, from far away.
     let run = folder.run(
         "calibrate far/nominal.urdf far/measurements.csv --formulation screw-offsets --method gauss-newton --robust off --held-out 0",

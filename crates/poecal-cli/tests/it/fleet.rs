@@ -15,7 +15,9 @@ fn line(count: usize) -> Folder {
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.write("station.toml", STATION);
     for robot in 0..count {
-        folder.run_to_success(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
+        folder.run_to_success(&format!(
+            "simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"
+        ));
         let text = folder.read(&format!("made{robot}/measurements.csv"));
         std::fs::create_dir_all(folder.path(&format!("inbox/SN{robot}"))).unwrap();
         folder.write(&format!("inbox/SN{robot}/2026-01-0{}.csv", robot + 1), text);

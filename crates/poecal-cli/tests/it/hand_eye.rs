@@ -146,7 +146,9 @@ fn every_form_of_poses_gives_the_same_camera() {
 fn a_calibration_exports_the_transform_that_hand_eye_finds() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.run_to_success("simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell");
+    folder.run_to_success(
+        "simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell",
+    );
     folder.run_to_success("hand-eye cell/measurements.csv --robot robot.urdf --camera beside --out eye --frame-names base_link,tool,device,measured");
     folder.run_to_success("calibrate robot.urdf cell/measurements.csv --fix joints --report none");
     folder.run_to_success("export poecal-out/calibration.json --format tf --out tf.txt");
@@ -192,8 +194,9 @@ fn two_files_are_joined_by_names_and_results_are_written_once() {
         .map(|(k, (_, board))| format!("{k:04},{}", text(camera_numbers(board))))
         .collect();
     fs::write(folder.path("board.csv"), format!("image,{SEEN}\n{}\n", board.join("\n"))).unwrap();
-    let said = folder
-        .run_to_success("hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board");
+    let said = folder.run_to_success(
+        "hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board",
+    );
     assert!(said.contains("12 of 12 fitted") && said.contains("eye in flange: (4"), "{said}");
     for name in [
         "hand_eye.json",
@@ -286,7 +289,8 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
         }
     }
     fs::write(folder.path("touches.csv"), lines.join("\n")).unwrap();
-    let found: serde_json::Value = serde_json::from_str(&folder.run_to_success("tcp touches.csv --json")).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_str(&folder.run_to_success("tcp touches.csv --json")).unwrap();
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["tips"][0]["position_m"][2]) - 0.152).abs() < 5e-5, "{found}");
     assert!(number(&found["axis"]["direction"][2]) > 0.9999, "{found}");
@@ -379,10 +383,11 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         assert!((of(&plain, k) - truth).abs() < 1.5e-3 * bound, "{plain}");
         assert!(bound < 1.0, "{bound}");
     }
-    let turned: serde_json::Value = serde_json::from_str(
-        &folder.run_to_success(&format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv")),
-    )
-    .unwrap();
+    let turned: serde_json::Value =
+        serde_json::from_str(&folder.run_to_success(
+            &format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv"),
+        ))
+        .unwrap();
     for k in 0..3 {
         assert!((of(&plain, k) - of(&turned, k)).abs() < 1e-6, "{plain} {turned}");
     }
@@ -410,7 +415,8 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     // The fitted lens can be stated, and results in the same camera.
     fs::copy(folder.path("found/lens.csv"), folder.path("again.csv")).unwrap();
     let again: serde_json::Value = serde_json::from_str(
-        &folder.run_to_success(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
+        &folder
+            .run_to_success(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
     )
     .unwrap();
     for k in 0..3 {

@@ -47,7 +47,8 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
 fn json_holds_the_same() {
     let folder = folder();
     let of = |arguments: &str| -> serde_json::Value {
-        serde_json::from_str(&folder.run_to_success(&format!("plan column.toml --rows {arguments} --json"))).unwrap()
+        serde_json::from_str(&folder.run_to_success(&format!("plan column.toml --rows {arguments} --json")))
+            .unwrap()
     };
     let found = of("still.csv --kind pose");
     assert_eq!(

@@ -56,7 +56,10 @@ fn offsets_that_were_put_in_are_found() {
 fn json_holds_the_same_and_goes_into_a_file() {
     let folder = folder();
     folder.run_to_success("export column.toml --offset turn=0.5deg --offset slide=1.2mm --out actual.toml");
-    assert_eq!(folder.run_to_success("offsets column.toml actual.toml --free tip --json --out offsets.json"), "");
+    assert_eq!(
+        folder.run_to_success("offsets column.toml actual.toml --free tip --json --out offsets.json"),
+        ""
+    );
     let found = json(&folder.read("offsets.json"));
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["joints"][0]["offset_deg"]) - 0.5).abs() < 1e-12);

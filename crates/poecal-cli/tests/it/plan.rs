@@ -14,8 +14,9 @@ fn folder() -> Folder {
 #[test]
 fn a_planned_list_is_read_and_completed() {
     let folder = folder();
-    let out =
-        folder.run_to_success("plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm");
+    let out = folder.run_to_success(
+        "plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm",
+    );
     for words in [
         "planned       12 configurations to fit, 4 at random to judge by, 0 returns to\n",
         "expected      ",
@@ -53,7 +54,9 @@ fn a_planned_list_is_read_and_completed() {
 #[test]
 fn replaced_rows_leave_the_others_in_their_places() {
     let folder = folder();
-    folder.run_to_success("plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm");
+    folder.run_to_success(
+        "plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm",
+    );
     let before = folder.read("joints.csv");
     let out = folder.run_to_success(
         "plan column.toml --keep-rows joints.csv --replace-rows 3,15 --out better.csv --report plan.html",
@@ -161,5 +164,12 @@ fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let (run, [second, _]) = planned("");
     let words = "every joint has the limits -401 to 401 deg, which are placeholders";
     assert!(run.err.contains(words) && second[0] >= -180.0 && second[1] <= 180.0, "{second:?} {}", run.err);
-    assert!(folder.run_to_success("check robot.urdf").split_whitespace().collect::<Vec<_>>().join(" ").contains(words));
+    assert!(
+        folder
+            .run_to_success("check robot.urdf")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+            .contains(words)
+    );
 }

@@ -53,7 +53,9 @@ fn the_report_made_again_is_the_same() {
 #[test]
 fn a_report_states_the_session() {
     let folder = session(SessionKind::POINT);
-    folder.run_to_success("calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga");
+    folder.run_to_success(
+        "calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga",
+    );
     folder.run_to_success("report poecal-out/calibration.json --record operator=Quirin -o page.html");
     let page = folder.read("page.html");
     assert!(page.contains("4711") && page.contains(">Quirin<") && !page.contains(">Walburga<"));
@@ -64,7 +66,9 @@ fn a_report_states_the_session() {
 #[test]
 fn the_file_names_what_it_was_made_of_and_how() {
     let folder = session(SessionKind::POINT);
-    folder.run_to_success("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");
+    folder.run_to_success(
+        "calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none",
+    );
     let inputs = calibration(&folder, "a").inputs;
     assert_eq!(
         inputs.command.as_deref(),

@@ -141,8 +141,9 @@ fn what_does_not_go_together_is_refused() {
          instruments' names out if all measure in the base frame, or --device-frame base if each has a frame of its own",
     );
     // The frame of held-out rows is estimated from these.
-    folder
-        .run_to_success("calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged");
+    folder.run_to_success(
+        "calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged",
+    );
     let columns = folder.read("both.csv").lines().next().unwrap().rfind("instrument").unwrap() + 1;
     refused(
         "both.csv --device-frames per-file",

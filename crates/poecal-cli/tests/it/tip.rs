@@ -87,7 +87,8 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
             [cells[0], cells[1], cells[2]]
         })
         .collect();
-    let predict = |options: &str| measured(&folder.run_to_success(&format!("predict {options} measurements.csv")), 1);
+    let predict =
+        |options: &str| measured(&folder.run_to_success(&format!("predict {options} measurements.csv")), 1);
     let (by_target, by_tip) = (
         predict("results/calibration.json --output-frame device"),
         predict("moved/calibration.json --output-frame device"),
@@ -108,7 +109,8 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
     assert!(rms(&target, &predict("moved/calibration.json --output-frame base")) < 0.05);
     // A file without names is judged by either.
     for name in ["results", "moved"] {
-        let judged = folder.run_to_success(&format!("validate {name}/calibration.json measurements.csv --json"));
+        let judged =
+            folder.run_to_success(&format!("validate {name}/calibration.json measurements.csv --json"));
         let found: serde_json::Value = serde_json::from_str(&judged).unwrap();
         let rms = found["calibrated"]["position_mm"]["rms"].as_f64().unwrap();
         let inside = found["promised"]["parts"]["position"]["inside"].clone();
@@ -120,7 +122,8 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
 #[test]
 fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
     let folder = session(SessionKind::POINT);
-    let told = folder.run_to_success("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
+    let told =
+        folder.run_to_success("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
     assert!(told.contains("tip           the point that was measured, by --move-tip"), "{told}");
     let file = calibration(&folder, "results");
     assert!(file.move_tip && file.targets.is_empty());

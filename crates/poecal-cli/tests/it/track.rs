@@ -7,7 +7,8 @@ fn cell() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 3 --out cell");
-    folder.run_to_success("calibrate cell/nominal.urdf cell/measurements.csv --corrections off --report none");
+    folder
+        .run_to_success("calibrate cell/nominal.urdf cell/measurements.csv --corrections off --report none");
     folder
 }
 
@@ -195,7 +196,9 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
 fn another_tool_and_another_place_of_the_device_are_named() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell");
+    folder.run_to_success(
+        "simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell",
+    );
     folder.run_to_success(
         "calibrate cell/nominal.urdf cell/measurements.csv --device-frame base --corrections off --report none",
     );

@@ -296,8 +296,8 @@ impl<'a> MeasurementReader<'a> {
         settle_faces(&mut found.data, self.robot);
         found.data.settle_pixels();
         refuse_wrong_boards(&found.data)?;
-        if self.map.motors.is_some() && self.options.controller.is_none() {
-            settle_zeros(&mut found, self.robot);
+        if let Some(motors) = self.map.motors.as_ref().filter(|_| self.options.controller.is_none()) {
+            settle_zeros(&mut found, self.robot, motors)?;
         }
         let settled = settle_pictures(&mut found.data, self.robot);
         found.notes.extend(settled.notes);

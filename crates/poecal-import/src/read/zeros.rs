@@ -1,25 +1,37 @@
 //! Signs and zeros of joints whose readings are those of motors.
 
+use std::f64::consts::TAU;
+
 use crate::MeasurementFile;
+use crate::table::motors::Motors;
 use poecal_fit::start::{JointZeros, find_zeros};
+use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
-use poecal_numerics::error::{first_few, shorten_name};
+use poecal_numerics::error::{ErrorKind, Result, first_few, shorten_name};
 
 /// Fewest rows by which signs and zeros are found.
 const FEWEST_ROWS: usize = 8;
 /// Smallest zero that is reported, rad.
 const LEAST_RAD: f64 = 0.009;
 
+/// Ticks of a turn, and the share of a motor's range by which a reading may be beyond it.
+const TICKS: f64 = 4096.0;
+const BEYOND: f64 = 0.05;
+
 /// Finds signs and zeros, changes the readings and the account of how they are made, and states what was found.
-pub(crate) fn settle_zeros(found: &mut MeasurementFile, robot: &Robot) {
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] if a reading is far beyond the range of its motor.
+pub(crate) fn settle_zeros(found: &mut MeasurementFile, robot: &Robot, motors: &Motors) -> Result<()> {
+    refuse_far_ticks(&found.data, motors)?;
     let rows = found.data.len();
     if rows < FEWEST_ROWS {
         found.warnings.push(format!(
             "found {rows} rows, and signs and zeros of motors need {FEWEST_ROWS}: the readings are taken as the file of the motors has them"
         ));
-        return;
+        return Ok(());
     }
-    let Some(zeros) = find_zeros(&found.data, robot) else { return };
+    let Some(zeros) = find_zeros(&found.data, robot) else { return Ok(()) };
     found.data.change_readings(u32::try_from(rows).unwrap_or(u32::MAX), |readings| zeros.apply(readings));
     found.data.change_further(|readings| zeros.apply(readings));
     if let Some(controller) = &mut found.data.controller {
@@ -34,6 +46,31 @@ pub(crate) fn settle_zeros(found: &mut MeasurementFile, robot: &Robot) {
             1e3 * zeros.misfit_m
         ));
     }
+    Ok(())
+}
+
+/// Refuses raw positions that the motors of the file cannot have.
+fn refuse_far_ticks(data: &Dataset, motors: &Motors) -> Result<()> {
+    let readings = data.controller.iter().flat_map(|it| &it.readings).enumerate();
+    for (at, reading) in readings {
+        let Some((column, made)) = reading.columns.iter().next() else { continue };
+        let Some([least, most]) = motors.range(&reading.reading) else { continue };
+        if made.unit != "ticks" || made.factor != 1.0 {
+            continue;
+        }
+        let margin = BEYOND * (most - least);
+        for row in 0..data.len() {
+            let ticks = ((data.readings(row)[at] - reading.offset) * TICKS / TAU).round();
+            if !(least - margin..=most + margin).contains(&ticks) {
+                let place = data.place(u32::try_from(row).unwrap_or(u32::MAX));
+                return ErrorKind::Measurement.refuse(format!(
+                    "found {ticks} ticks of `{column}` ({place}), expected {least} to {most}, the range of the motor: state the file of this arm, as it \
+                     was when the positions were read"
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Signs and zeros in words.

@@ -29,7 +29,7 @@ pub(crate) mod train_where;
 pub(crate) mod understanding;
 pub(crate) mod understood;
 
-pub(crate) use columns::{builder, column_names, column_spec, mapping, mapping_values, targets};
+pub(crate) use columns::{builder, column_names, column_spec, mapping, mapping_values, motors, targets};
 
 use std::collections::BTreeMap;
 use std::path::Path;

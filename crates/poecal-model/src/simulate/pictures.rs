@@ -81,6 +81,10 @@ pub struct SimulatedPictures {
 const TRIES: usize = 2000;
 /// Remainder below which an arm has reached a pose.
 const REACHED: f64 = 1e-9;
+/// Joints of an arm that reaches any pose. A shorter arm comes as near as it can.
+const JOINTS_OF_A_POSE: usize = 6;
+/// Least cosine between the board's normal and the line of sight, in a view of an arm that only comes near.
+const FACING: f64 = 0.5;
 
 /// A robot in front of the static object, in a simulation of pictures.
 struct PictureScene<'a> {
@@ -182,7 +186,8 @@ impl PictureSimulation {
                 * self.relative_pose(&self.sight(generator)).inverse()
                 * scene.tip_from_held.inverse();
             let mut q: Vec<f64> = scene.readings.iter().map(|&at| near[at]).collect();
-            if scene.arm.solve_nearest(&wanted, &mut q) > REACHED {
+            let is_short = q.len() < JOINTS_OF_A_POSE;
+            if scene.arm.solve_nearest(&wanted, &mut q) > REACHED && !is_short {
                 continue;
             }
             let mut all = near.clone();
@@ -196,6 +201,11 @@ impl PictureSimulation {
             } else {
                 scene.base_from_other.inverse() * held
             };
+            let center = camera_from_board.act(&middle(&self.board.points));
+            let facing = camera_from_board.rotation.column(2).dot(&center) / center.norm();
+            if is_short && facing < FACING {
+                continue;
+            }
             if let Some(corners) = self.corners(&camera_from_board, generator) {
                 return Some((all, camera_from_board, corners));
             }

@@ -5,6 +5,7 @@
 
 mod export_check;
 mod mjcf;
+mod motors;
 mod names;
 mod numbers;
 mod offsets;
@@ -142,7 +143,7 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
         ExportFormat::Franka => origins::write(model, robot, &Flavour::Franka),
         ExportFormat::Csv => origins::write_csv(robot),
         ExportFormat::Pal => pal::write(model, robot),
-        ExportFormat::Lerobot => offsets::write_ticks(model, robot, options.motors.as_deref()),
+        ExportFormat::Lerobot => motors::write_motors(model, robot, options.motors.as_deref()),
         ExportFormat::Offsets => offsets::write(model, robot),
         ExportFormat::Mjcf => mjcf::write(robot),
         ExportFormat::Sdf => sdf::write(robot),

@@ -1,11 +1,8 @@
 //! The best approximation by joint offsets: for controllers that take nothing else.
 
-use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use serde::Serialize;
 
-use serde::{Deserialize, Serialize};
-
-use super::{ExportedText, Proof, export_error, remaining_difference};
+use super::{ExportedText, Proof, export_error};
 use crate::calibration_file::PoseEntry;
 use crate::model::{Model, ModelSource};
 use crate::offsets::ModelOffsets;
@@ -13,11 +10,8 @@ use poecal_arm::lie::Pose;
 use poecal_formats::proof::Difference;
 use poecal_model::offsets::{OffsetExplanation, into_screws};
 use poecal_model::robot::{Joint, JointKind, Robot};
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::Result;
 use poecal_storage::json_text;
-
-/// Ticks of a turn of Feetech's motors.
-const TICKS: f64 = 4096.0;
 
 #[derive(Serialize)]
 struct OffsetsFile<'a> {
@@ -54,7 +48,7 @@ struct TipErrorsEntry {
 }
 
 /// Offsets with the best base and tool.
-fn explain_offsets(model: &Model, robot: &Robot) -> Result<(Robot, OffsetExplanation)> {
+pub(super) fn explain_offsets(model: &Model, robot: &Robot) -> Result<(Robot, OffsetExplanation)> {
     let ModelSource::Calibration(file) = &model.source else {
         return Err(export_error(
             "found a model, expected the calibration.json of a robot that had other numbers before"
@@ -68,7 +62,7 @@ fn explain_offsets(model: &Model, robot: &Robot) -> Result<(Robot, OffsetExplana
 }
 
 /// The nominal robot with offsets, another base and another tool.
-fn move_nominal(nominal: &Robot, offsets: &[f64], base: &Pose, tool: &Pose) -> Result<Robot> {
+pub(super) fn move_nominal(nominal: &Robot, offsets: &[f64], base: &Pose, tool: &Pose) -> Result<Robot> {
     let mut robot = into_screws(&nominal.without_offsets(), offsets)?;
     for joint in &mut robot.joints {
         joint.screw = joint.screw.transform(base);
@@ -147,102 +141,4 @@ fn words(found: &OffsetExplanation) -> String {
         found.with_offsets.max_rad.to_degrees(),
         found.without_offsets.rms_m * 1e3
     )
-}
-
-/// A motor of LeRobot's calibration.
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Motor {
-    id: u32,
-    drive_mode: u8,
-    homing_offset: i64,
-    range_min: i64,
-    range_max: i64,
-}
-
-/// Largest homing offset that the motors store.
-const MOST_TICKS: i64 = 2047;
-
-/// LeRobot's existing calibration of motors, or one without offsets.
-fn motors_of(robot: &Robot, motors: Option<&str>) -> Result<BTreeMap<String, Motor>> {
-    match motors {
-        Some(text) => serde_json::from_str(text).map_err(|error| {
-            option(format!(
-                "found {error} in the calibration of motors, expected LeRobot's JSON with id, drive_mode, homing_offset, range_min, range_max of \
-                 each joint"
-            ))
-        }),
-        None => {
-            let motor = |id: u32| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
-            let joints = robot.joints.iter().map(|joint| joint.name.clone());
-            Ok(joints.zip((1..).map(motor)).collect())
-        }
-    }
-}
-
-/// Offsets in ticks of Feetech's motors, `position = ticks - homing_offset`.
-pub(crate) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<ExportedText> {
-    let (nominal, found) = explain_offsets(model, robot)?;
-    if let Some(joint) = robot.joints.iter().find(|it| it.kind == JointKind::Prismatic) {
-        return Err(export_error(format!(
-            "found joint `{}`, which slides, expected joints that motors turn",
-            joint.name
-        )));
-    }
-    if let Some(controller) = model.sums() {
-        return Err(export_error(format!(
-            "found readings that the mapping made of others ({}), expected those of the motors",
-            controller.words()
-        )));
-    }
-    let mut file = motors_of(robot, motors)?;
-    let mut rounded = Vec::with_capacity(found.offsets.len());
-    for (joint, offset) in robot.joints.iter().zip(&found.offsets) {
-        let known = file.keys().cloned().collect::<Vec<_>>().join(", ");
-        let Some(motor) = file.get_mut(&joint.name) else {
-            return Err(option(format!(
-                "found no motor `{}` in the calibration of motors, expected one of each joint, and found {known}",
-                joint.name
-            )));
-        };
-        if motor.drive_mode != 0 {
-            return Err(option(format!(
-                "found drive_mode {} of motor `{}`, expected 0: what turns a motor round depends on the unit in which LeRobot reads it",
-                motor.drive_mode, joint.name
-            )));
-        }
-        let ticks = (offset * TICKS / TAU).round();
-        let corrected = motor.homing_offset.saturating_sub(ticks as i64);
-        if ![motor.homing_offset, corrected].iter().all(|it| (-MOST_TICKS..=MOST_TICKS).contains(it)) {
-            return Err(option(format!(
-                "found a homing offset of {} for motor `{}`, which would become {corrected}, expected at most {MOST_TICKS}, as the motors store it: \
-                 take the horn off and put it back nearer to the middle",
-                motor.homing_offset, joint.name
-            )));
-        }
-        motor.homing_offset = corrected;
-        rounded.push(ticks * TAU / TICKS);
-    }
-    let again = move_nominal(&nominal, &rounded, &found.base_motion, &found.tip_motion)?;
-    let remains = remaining_difference(robot, &again);
-    let alone = move_nominal(&nominal, &rounded, &Pose::identity(), &Pose::identity())?;
-    let mut notes = vec![format!(
-        "offsets alone, rounded to ticks of {:.3} deg: the tip is off by up to {:.3} mm, and by up to {:.3} mm where base and tool are entered \
-         elsewhere",
-        360.0 / TICKS,
-        remaining_difference(robot, &alone).position_m * 1e3,
-        remains.position_m * 1e3
-    )];
-    if motors.is_none() {
-        notes.push("the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned());
-    }
-    Ok(ExportedText {
-        text: json_text(&file, "calibration of motors")?,
-        notes,
-        proof: Proof::Remains(remains),
-    })
-}
-
-fn option(message: String) -> Error {
-    ErrorKind::Option.error(message)
 }

@@ -82,15 +82,7 @@ impl ReservedFolder {
         }
         let staging = Staging::new(&disk, &parent, &prefix).map_err(cannot)?;
         let (named, was_there) = (folder.to_owned(), there.is_some());
-        Ok(ReservedFolder {
-            named,
-            folder: actual,
-            contents,
-            existing,
-            was_there,
-            staging,
-            _held: held,
-        })
+        Ok(ReservedFolder { named, folder: actual, contents, existing, was_there, staging, _held: held })
     }
 
     /// The place of a report outside these results; `None` if its path is that among them.

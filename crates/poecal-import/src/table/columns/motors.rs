@@ -62,6 +62,18 @@ impl Motors {
         Ok(motors)
     }
 
+    /// Range of the motor of a joint, in ticks.
+    pub(crate) fn range(&self, name: &str) -> Option<[f64; 2]> {
+        let (_, motor) = self.motor(name)?;
+        Some([motor.range_min, motor.range_max].map(f64::from))
+    }
+
+    /// The motor of a joint: models name joints as motors, or by their numbers.
+    fn motor(&self, name: &str) -> Option<(&String, &Motor)> {
+        let by_number = || self.0.iter().find(|(_, motor)| name.parse() == Ok(motor.id));
+        self.0.get_key_value(name).or_else(by_number)
+    }
+
     /// Columns of the joints in a header, with what makes angles of them: zero is the middle of the range.
     ///
     /// # Errors
@@ -81,9 +93,7 @@ impl Motors {
     }
 
     fn column(&self, header: &Header<'_>, name: &str, robot: &Robot) -> Result<ColumnSpec> {
-        // Models name joints as motors, or by their numbers.
-        let by_number = || self.0.iter().find(|(_, motor)| name.parse() == Ok(motor.id));
-        let Some((motor_name, motor)) = self.0.get_key_value(name).or_else(by_number) else {
+        let Some((motor_name, motor)) = self.motor(name) else {
             let own: Vec<String> = self.0.keys().cloned().collect();
             let joints = robot.joint_reading_names();
             return ErrorKind::Measurement.refuse(format!(
