@@ -31,7 +31,7 @@ FOLLOWED = {
     "or number them in a mapping (--columns), like": "crates/poecal-import/tests/it/mapping_forms.rs::columns_of_a_table_without_names_are_named_by_their_numbers",
     "export them with comments, or name the columns by number in a mapping (--columns)": HERE + "test_points_without_a_unit",
     "expected one that was measured: name its columns in a mapping (--columns)": HERE + "test_two_sets_of_coordinates",
-    "since angles do not say their convention, which a mapping does (--columns)": HERE + "test_two_sets_of_coordinates",
+    "since angles do not state their convention, which a mapping does (--columns)": HERE + "test_two_sets_of_coordinates",
     "is meant, write `{name}[{}]`": HERE + "test_a_unit_in_a_name",
     "which a mapping (--columns) reads by lines under `[joints]` such as": HERE + "test_counts_of_an_encoder",
     "spread over {} mm, expected about the same: most likely they are in rad": HERE + "test_radians_that_are_called_degrees",

@@ -1,5 +1,6 @@
 """The pages for users keep to docs/vocabulary.md as far as that can be checked by whole phrases."""
 
+import json
 import re
 
 import pytest
@@ -47,3 +48,44 @@ def test_excluded_words_are_those_of_the_vocabulary():
 def test_excluded_words_are_found_across_line_ends_and_not_in_code():
     assert found("The axes stand As\ndrawn, and it\nkept promises.") == ["as drawn", "kept promise"]
     assert found("`as drawn`, drawn as a line\n```text\nkept promise\n```\n") == []
+
+
+# Names, comments and messages of the sources, by the rules of docs/style.md. Tests are read for their names and comments too.
+SOURCES = sorted(path for path in ROOT.glob("crates/*/**/*.rs") if "target" not in path.relative_to(ROOT).parts)
+COUNTS = ROOT / "tests/vocabulary.json"
+COMMENT = re.compile(r"^\s*//[/!]? (.*)")
+REPORTING = re.compile(r"\b(tells?|told|says?|said|gives?|given)\b", re.IGNORECASE)
+TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
+# Types of tests may share names, and those of the Python package mirror the library's.
+TYPE = re.compile(r"^(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait|union) (\w+)", re.MULTILINE)
+SHARED_NAMES = {"Error", "Options"}
+BARE = re.compile(r"\bfn (moved|told|said|seen|kept|given|left|taken|judged|found|stated|beside|within|around|along|known|held|shown|named|of)\(")
+
+
+def without_tests(text):
+    return text.split("#[cfg(test)]\nmod ")[0]
+
+
+def counted():
+    """How often each rule of the style is broken."""
+    texts = {path: path.read_text(encoding="utf-8") for path in SOURCES}
+    comments = [found[1] for text in texts.values() for line in text.splitlines() if (found := COMMENT.match(line))]
+    sources = {path: without_tests(text) for path, text in texts.items() if "src" in path.relative_to(ROOT).parts and path.name != "tests.rs"}
+    library = {path: text for path, text in sources.items() if path.relative_to(ROOT).parts[1] != "poecal-py"}
+    code = [line for text in sources.values() for line in text.splitlines() if not COMMENT.match(line)]
+    types = [name for text in library.values() for name in TYPE.findall(text)]
+    return {
+        "functions_called_of": sum(len(re.findall(r"\bfn of\b", text)) for text in texts.values()),
+        "functions_that_are_participles": sum(len(BARE.findall(text)) for text in sources.values()),
+        "comments_that_begin_with_what": sum(bool(re.match(r"(What|Where|How|Of|Whether)\b", comment)) for comment in comments),
+        "comments_that_tell": sum(bool(REPORTING.search(comment)) for comment in comments),
+        "messages_that_tell": sum(bool(REPORTING.search(text)) for line in code for text in TEXT.findall(line)),
+        "types_of_one_name": sum(types.count(name) > 1 for name in set(types) - SHARED_NAMES),
+    }
+
+
+def test_exceptions_from_the_style_only_become_fewer():
+    limits = json.loads(COUNTS.read_text())
+    found = counted()
+    print(found)
+    assert found == limits, "above: keep to docs/style.md; below: lower the number in tests/vocabulary.json"

@@ -52,7 +52,7 @@ use crate::words::{FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form,
 pub(crate) use shared_args::{ChainArgs, TextOutput};
 use shared_args::{ColumnArgs, JUDGED, MeaningArgs, RESULTS, ReadingArgs};
 
-/// What the program ends with.
+/// End of the program.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
                           worse than --require asks for, a limit of --accept is not met with 95 % confidence, or the output could not be \
                           printed; 2 refused: wrong input or usage, nothing was written; 3 no result at all";
@@ -61,7 +61,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 the
 #[derive(Debug, Parser)]
 #[command(name = "poecal", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Suppress everything except errors and requested output
@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
     /// Number of threads, 1 to 256 (results do not depend on it)
     #[arg(long, global = true, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
-    /// What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names)
+    /// Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names)
     #[arg(long, global = true, value_name = "NAME=N", value_parser = limit_of_files)]
     pub(crate) limit: Vec<LimitArgument>,
     /// Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once]
@@ -167,7 +167,7 @@ pub(crate) struct Compare {
     pub(crate) first: PathBuf,
     /// The second calibration of the same robot (calibration.json)
     pub(crate) second: PathBuf,
-    /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together].
+    /// Largest motion of the tip (RMS), like 0.5mm; end with code 1 if it moved further [default: the expected errors of both together].
     /// NAME=N is what a file may take, as for all commands
     #[arg(long, value_name = "LENGTH", value_parser = limit_of_change, allow_hyphen_values = true)]
     limit: Vec<LimitArgument>,
@@ -182,7 +182,7 @@ pub(crate) struct Compare {
 }
 
 impl Compare {
-    /// How far the tip may have moved, metres, as stated last.
+    /// Largest motion of the tip, metres, as stated last.
     pub(crate) fn limit_m(&self) -> Option<f64> {
         self.limit
             .iter()
@@ -229,7 +229,7 @@ pub(crate) struct Validate {
     /// File for the report, or `none` [default: report.html among the results]
     #[arg(long, value_name = "FILE|none", help_heading = RESULTS)]
     pub(crate) report: Option<ReportPlace>,
-    /// What the report states of this session, like operator=Mia (repeatable): the keys of `poecal calibrate`
+    /// Entries of the report on this session, like operator=Mia (repeatable): the keys of `poecal calibrate`
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
     /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]

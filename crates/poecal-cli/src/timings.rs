@@ -49,7 +49,7 @@ impl StopWatch {
 
 /// A stop watch without a clock: without an operating system there are no clocks.
 #[cfg(not(any(unix, windows)))]
-struct Watch;
+struct StopWatch;
 
 #[cfg(not(any(unix, windows)))]
 impl StopWatch {

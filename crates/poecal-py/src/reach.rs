@@ -196,7 +196,7 @@ pub(crate) fn language(path: &Path, named: Option<&str>) -> PyResult<Language> {
         Some(word) => choose_word("language", word, &words),
         None => Language::of_name(path).map_err(raise)?.ok_or_else(|| {
             let message = format!(
-                "found no language for {}, expected one of urscript, rapid, krl, fanuc where the end of the file's name does not tell",
+                "found no language for {}, expected one of urscript, rapid, krl, fanuc if the end of the file's name does not state it",
                 path.display()
             );
             argument("language", message)

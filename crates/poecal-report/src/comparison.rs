@@ -242,7 +242,7 @@ impl ComparisonReport {
     /// Decision whether the changes are more than noise.
     fn noise(&self) -> String {
         let Some(test) = self.test else {
-            return "unknown: a calibration has no uncertainty, so that noise is not told from change"
+            return "unknown: a calibration has no uncertainty, so that noise and change are not distinguishable"
                 .to_owned();
         };
         let numbers = format!(

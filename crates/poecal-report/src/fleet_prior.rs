@@ -33,7 +33,7 @@ pub fn fleet_prior(rows: &[LedgerRow], of: &str) -> Result<String> {
     let tilt = usual(|it| Some(it.axis_tilt_deg));
     let shift = usual(|it| (it.unit != "mm").then_some(it.axis_shift_mm));
     let mut out = format!(
-        "# What {} robots of {of} say of the next one: the prior of the line, as `prior` of its station.\npoecal_settings = 1\n",
+        "# What {} robots of {of} predict of the next one: the prior of the line, as `prior` of its station.\npoecal_settings = 1\n",
         good.len()
     );
     let _ = writeln!(out, "tolerance = \"{tilt:.4}deg,{shift:.4}mm\"");

@@ -208,7 +208,7 @@ impl PlanReport {
     #[must_use]
     pub fn answer(&self) -> String {
         format!(
-            "{} configurations to fit are expected to give {} mm calibrated and {} mm corrected (RMS over the workspace); as many random ones {} and {} mm.",
+            "{} configurations to fit are expected to leave {} mm calibrated and {} mm corrected (RMS over the workspace); as many random ones {} and {} mm.",
             self.planned_count(),
             number(self.expected.calibrated_mm),
             number(self.expected.corrected_mm),

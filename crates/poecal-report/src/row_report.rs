@@ -114,7 +114,7 @@ impl RowReport {
         }
         if let (Some(calibrated), Some(corrected)) = (self.after_10_calibrated_mm, self.after_10_corrected_mm)
         {
-            let _ = write!(out, "; 10 more would give {} and {} mm", number(calibrated), number(corrected));
+            let _ = write!(out, "; 10 more would leave {} and {} mm", number(calibrated), number(corrected));
         }
         if !self.next_words.is_empty() {
             let _ = write!(out, "\n  next best: {}", self.next_words);

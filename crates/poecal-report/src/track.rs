@@ -237,7 +237,7 @@ impl TrackReport {
         let apart = if self.alternatives.is_empty() {
             ""
         } else {
-            " First tell the explanations apart: repeat more configurations of the calibration."
+            " First distinguish the explanations: repeat more configurations of the calibration."
         };
         format!("{words}.{apart}")
     }

@@ -286,7 +286,7 @@ fn words(found: &ChangeExplanation) -> String {
         }
         ExplanationKind::Zero => format!("{first}: zero by {}", each(0)),
         ExplanationKind::Axis => format!("{first}: axis moved by {}", far()),
-        ExplanationKind::Give => format!("{first}: gives otherwise by {} at full weight", far()),
+        ExplanationKind::Give => format!("{first}: deflects otherwise by {} at full weight", far()),
         ExplanationKind::TwoZeros => {
             format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1))
         }

@@ -136,7 +136,7 @@ impl Model {
         let Some(beside) = beside else { return Model::parse(&text, path, selection) };
         let table = source_text::read(
             &beside,
-            "the controller's nominal table, without which calibration.conf says differences alone",
+            "the controller's nominal table, without which calibration.conf states differences alone",
         )?;
         Model::parse_beside(&text, path, Some((&table, &beside)), selection)
     }

@@ -198,7 +198,7 @@ pub enum TermGroup: GroupRow {
         effect: "the bearing or link of {joint} tilts by up to {much} under weight" },
     /// Ratios of gears; radians each radian.
     Ratio = GroupRow { name: "ratio", symbols: ANGLES, sizes: [1e-4, 1e-4, 3e-5], tried: OF_VALUES,
-        effect: "{joint} turns {much} {way} each radian than it says" },
+        effect: "{joint} turns {much} {way} each radian than it reads" },
     /// First and second harmonic of the joint's own value; radians of amplitude.
     Harmonics = GroupRow { name: "harmonics", symbols: ANGLES, sizes: [1e-4, 1e-4, 3e-5], tried: OF_VALUES,
         effect: "gear or encoder of {joint} errs by up to {much} within a turn" },
@@ -213,7 +213,7 @@ pub enum TermGroup: GroupRow {
         effect: "{joint} follows the factors by up to {much}" },
     /// Gears, bearings and links that are compliant under a payload: of the factor `payload`, radians each kilogram at full lever.
     Payload = GroupRow { name: "payload", symbols: ["mrad", "mrad/kg"], sizes: [1e-4, 0.0, 0.0], tried: OF_LENGTHS,
-        effect: "{joint} gives by up to {much} under the payload" },
+        effect: "{joint} deflects by up to {much} under the payload" },
     /// Bearings and links that shift under weight; metres.
     Shift = GroupRow { name: "shift", symbols: LENGTHS, sizes: [1e-4, 0.0, 0.0], tried: OF_VALUES,
         effect: "the bearing or link of {joint} shifts by up to {much} under weight" },

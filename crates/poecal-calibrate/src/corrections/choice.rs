@@ -68,13 +68,13 @@ impl SizesReason {
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
-            SizesReason::Given => "the sizes were given",
+            SizesReason::Given => "the sizes were stated",
             SizesReason::Predict => "they predict rows better that were left out",
             SizesReason::NoBetter => "no joint terms predict other rows clearly better",
             SizesReason::Small => "no rows could be left out, so the sizes are small ones",
             SizesReason::WorseHeldOut => "the joints' terms predict the rows worse that were held out",
-            SizesReason::TooFew => "too few configurations to tell what the joints do",
-            SizesReason::Undetermined => "the rows do not say what the joints do",
+            SizesReason::TooFew => "too few configurations to determine the joint effects",
+            SizesReason::Undetermined => "the rows do not determine the joint effects",
             SizesReason::LedNowhere => "the fit of the joints' terms explains the rows no better",
         }
     }

@@ -314,7 +314,7 @@ impl<'a> Gatherer<'a> {
                 let is_told = one.told.max(other.told) > 0.2;
                 if is_told && correlation.abs() > CONFUSED {
                     confused.push(format!(
-                        "{} of {} and {} of {} are hardly told apart (correlation {correlation:.2})",
+                        "{} of {} and {} of {} are hardly distinguishable (correlation {correlation:.2})",
                         one.group.name(),
                         one.joint,
                         other.group.name(),

@@ -70,7 +70,7 @@ pub(crate) fn suspicions(
                     .map(|(_, other, words)| format!("{}: {words}", shorten_name(&other.name)))
                     .collect();
                 words[*joint].push(format!(
-                    "{own}, or else {}; the measurements do not tell which",
+                    "{own}, or else {}; the measurements do not distinguish them",
                     others.join(", or else ")
                 ));
             }

@@ -202,7 +202,7 @@ impl ChangeSearch<'_> {
             );
         }
         let remedy = if self.session.device_free {
-            "give the rows from there on another name in a column `instrument`, or calibrate each part by itself"
+            "name the rows from there on otherwise in a column `instrument`, or calibrate each part by itself"
         } else {
             "calibrate each part by itself, or only one of them"
         };

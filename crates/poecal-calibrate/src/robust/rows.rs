@@ -95,9 +95,9 @@ impl Robustness {
             return None;
         }
         let what = match self.loss {
-            Some(loss) => format!("the fit gives them almost no weight ({} loss, --robust)", loss.word()),
+            Some(loss) => format!("their weight in the fit is almost zero ({} loss, --robust)", loss.word()),
             None if fitted == 0 => "none of them was fitted".to_owned(),
-            None => "the fit gives them full weight; use --robust tukey for a robust fit".to_owned(),
+            None => "their weight in the fit is full; use --robust tukey for a robust fit".to_owned(),
         };
         Some(format!(
             "found {} ({fitted} of {} fitted rows, {held_out} of {} held out), too far off for noise: {what}; \

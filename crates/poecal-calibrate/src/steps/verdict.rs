@@ -159,7 +159,7 @@ impl LevelObjections {
 /// Statement that the nominal model may be better inside the sampled range.
 fn no_clear_gain(expected: &Expectations) -> String {
     let (Some(sampled), Some(nominal)) = (expected.sampled, expected.nominal) else {
-        return "too few rows to tell whether this model predicts better than the nominal one in other configurations"
+        return "too few rows to decide if this model predicts better than the nominal one in other configurations"
             .to_owned();
     };
     format!(

@@ -40,13 +40,13 @@ pub(crate) struct Calibrate {
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) sigma_rotation: Option<f64>,
-    /// How far the axes may be from the model's (the prior): standard deviations of their directions and places, or none. They matter only
+    /// Deviations of the axes from the model (the prior): standard deviations of their directions and places, or none. They matter only
     /// where the measurements leave an axis open, which then stays near the model. auto chooses by cross-validation among 0.05deg,0.5mm,
     /// 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm. A joint of a TOML model may state its own. MOC.cfg of an ABB controller with Absolute
     /// Accuracy has the deviations that the maker found
     #[arg(long, value_name = "ANGLE,LENGTH|none|auto|MOC.cfg", default_value = "0.5deg,5mm", help_heading = FIT)]
     pub(crate) tolerance: BelievedTolerance,
-    /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks
+    /// Joint effects beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks
     /// among more of them; groups of terms with their sizes
     /// in radians or metres, sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout
     #[arg(long, value_name = "auto|all|off|GROUP[=SIZE],...", default_value = "auto", help_heading = FIT)]
@@ -58,7 +58,7 @@ pub(crate) struct Calibrate {
     /// came, 1 or -1, and payload which mass hangs at the tip, in kg
     #[arg(long, value_name = "COLUMN", value_delimiter = ',', help_heading = FIT)]
     pub(crate) factors: Vec<String>,
-    /// Where gravity pulls, in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
+    /// Direction of gravity in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
     /// leave the least noise
     #[arg(long, value_name = "X,Y,Z|find", default_value = "0,0,-1", allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) gravity: GravityDirection,
@@ -80,10 +80,10 @@ pub(crate) struct Calibrate {
     /// Seed of that choice [default: 1]
     #[arg(long, value_parser = parse_count::<u64>, help_heading = JUDGED)]
     pub(crate) seed: Option<u64>,
-    /// How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers
+    /// Treatment of outliers: auto fits by least squares, and by the tukey loss where that shows outliers
     #[arg(long, value_parser = one_of(ROBUST), default_value = "auto", help_heading = FIT)]
     pub(crate) robust: RobustLoss,
-    /// What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole
+    /// Treatment of a device, a target, a nest or a joint's zero that moved during the session, and of configurations that are wrong as a whole
     #[arg(long, value_parser = one_of(REPAIR), default_value = "auto", help_heading = FIT)]
     pub(crate) repair: Repairs,
     /// Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), with its turn as an arc at a third of the robot's reach; what is
@@ -128,7 +128,7 @@ pub(crate) struct Calibrate {
     /// Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
     #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
-    /// What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
+    /// Entries of the report on the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
     /// instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,

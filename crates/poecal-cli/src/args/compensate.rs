@@ -57,10 +57,10 @@ pub(crate) struct Compensate {
     /// Compute what is left once more, from the written numbers and by the models' own forward kinematics
     #[arg(long)]
     pub(crate) check: bool,
-    /// Where the actual robot cannot reach a pose, write the nearest configuration instead of leaving the target as it is
+    /// Write the nearest configuration if the actual robot cannot reach a pose, instead of leaving the target as it is
     #[arg(long)]
     pub(crate) nearest: bool,
-    /// How far a joint may be moved beyond its zero, like 2deg,2mm; a target that takes more, at a singularity, stays as it is and is listed
+    /// Largest motion of a joint beyond its zero, like 2deg,2mm; a target that takes more, at a singularity, stays as it is and is listed
     #[arg(long, value_name = "SIZES", value_parser = most_change, default_value = "2deg,2mm")]
     pub(crate) max_correction: MaxCorrection,
     /// Write nothing, only print what would be changed

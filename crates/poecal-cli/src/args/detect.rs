@@ -32,7 +32,7 @@ pub(crate) struct Detect {
     /// The paper: a4, a3 and letter lie as the board does; a size such as 400x300mm is as stated
     #[arg(long, value_name = "a4|a3|letter|WxHmm", default_value = "a4", requires = "print", help_heading = PRINT)]
     pub(crate) paper: PaperSize,
-    /// What a ruler shows on the print along x and along y, like 180.0mm,251.3mm: between the outer edges of all squares, or of the tags of a grid;
+    /// Lengths by a ruler on the print along x and along y, like 180.0mm,251.3mm: between the outer edges of all squares, or of the tags of a grid;
     /// from the left edge of the leftmost dot to that of the rightmost one; or of one loose tag. Prints the board with the size that it has
     #[arg(long, value_name = "X,Y", requires = "print", help_heading = PRINT)]
     pub(crate) measured: Option<PrintMeasurement>,

@@ -27,7 +27,7 @@ pub(crate) struct Fleet {
     pub(crate) watch: Option<Duration>,
 }
 
-/// What is made of a ledger.
+/// Results made from a ledger.
 #[derive(Debug, Subcommand)]
 pub(crate) enum FleetCommand {
     /// Write a page and a table of the line: first-pass rate, spreads, capability, outliers, steps

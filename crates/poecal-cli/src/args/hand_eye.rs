@@ -18,7 +18,7 @@ pub(crate) struct HandEyeArgs {
     /// `image` or row by row. Instead of the target's poses the corners of its pictures, with --lens and --markers
     #[arg(required = true, num_args = 1..=2, value_name = "POSES")]
     pub(crate) poses: Vec<PathBuf>,
-    /// Where the camera is
+    /// Place of the camera
     #[arg(long, value_parser = one_of(HAND_EYE_CAMERA))]
     pub(crate) camera: CameraMounting,
     /// Units of columns that state none, like mm,deg
@@ -103,7 +103,7 @@ impl TcpArgs {
     }
 }
 
-/// Where the frames that were found go.
+/// Destination of the frames that were found.
 #[derive(Args, Debug)]
 pub(crate) struct FramesOutputArgs {
     /// Folder for the results

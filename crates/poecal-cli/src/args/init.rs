@@ -10,7 +10,7 @@ use super::shared_args::TreeArgs;
 use crate::quantity::parse_count;
 use crate::words::{HAND_EYE_CAMERA, one_of, parser_of_measured};
 
-/// What is chosen, and the column or the word for it.
+/// Choice, and the column or the word for it.
 fn choice(text: &str) -> Result<(String, String), String> {
     let (what, column) =
         text.split_once('=').ok_or("expected what a column is for, and the column, like x=X_meas")?;

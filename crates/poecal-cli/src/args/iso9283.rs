@@ -39,7 +39,7 @@ pub(crate) struct Iso9283Args {
     /// 95 % confidence
     #[arg(long, value_name = "FIGURE:LIMIT", value_delimiter = ',', help_heading = JUDGED)]
     pub(crate) accept: Vec<FigureLimit>,
-    /// What is stated of the test, like payload="10 kg" or instrument=AT960 (repeatable): the keys of `poecal calibrate`
+    /// Entries of the report on the test, like payload="10 kg" or instrument=AT960 (repeatable): the keys of `poecal calibrate`
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
     /// Print JSON instead of the table

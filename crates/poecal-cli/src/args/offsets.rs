@@ -32,7 +32,7 @@ pub(crate) struct OffsetsArgs {
 }
 
 impl OffsetsArgs {
-    /// What is stated of a frame.
+    /// Statement about a frame.
     pub(crate) fn stated_constraint(&self, frame: OuterFrame) -> Result<Option<EndConstraint>> {
         match (self.free.contains(&frame), self.fix.contains(&frame)) {
             (true, true) => {

@@ -38,7 +38,7 @@ pub(crate) struct PlanArgs {
     pub(crate) purpose: Option<String>,
     #[command(flatten)]
     pub(crate) visits: VisitArgs,
-    /// What will be measured of the tip
+    /// Quantity that will be measured of the tip
     #[arg(long, value_parser = parser_of_simulated(), default_value = "point")]
     pub(crate) kind: SessionKind,
     /// Number of different configurations to fit [with --purpose drift: to measure at each visit, by default 8]
@@ -50,7 +50,7 @@ pub(crate) struct PlanArgs {
     /// Choose from these configurations alone (a table of joint readings)
     #[arg(long, value_name = "FILE")]
     pub(crate) candidates: Option<PathBuf>,
-    /// Where the robot will work and predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip in a
+    /// Workspace in which predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip in a
     /// box of the base frame, from one corner to the other
     #[arg(
         long,
@@ -67,13 +67,13 @@ pub(crate) struct PlanArgs {
     /// them, and all other rows stay. The list has all rows then, in their order
     #[arg(long, value_name = "ROW", value_delimiter = ',', requires = "keep_rows", conflicts_with_all = ["count", "held_out_count"])]
     pub(crate) replace_rows: Vec<u32>,
-    /// What the list shall be good at
+    /// Purpose of the list
     #[arg(long, value_parser = one_of(CRITERION), default_value = "expected")]
     pub(crate) criterion: PlanCriterion,
     /// Number of targets of a nest at the tip, all measured in each configuration
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     pub(crate) targets: u32,
-    /// Where the target is in the tip's frame, of several the first, the others turned about z, like 50,0,30mm [default: the targets of the
+    /// Position of the target in the tip's frame, of several the first, the others turned about z, like 50,0,30mm [default: the targets of the
     /// model, or the tip]
     #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, allow_hyphen_values = true)]
     pub(crate) target_offset: Option<[f64; 3]>,
@@ -81,7 +81,7 @@ pub(crate) struct PlanArgs {
     pub(crate) fit: FitArgs,
     #[command(flatten)]
     pub(crate) conditions: ConditionArgs,
-    /// How long the robot stands at each row, for how long all takes
+    /// Dwell at each row, for the duration of the whole
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30s")]
     pub(crate) stop: Duration,
     /// Seed of everything random
@@ -121,14 +121,14 @@ pub(crate) fn with_exclusions(plan: Command) -> Command {
         .mut_arg("camera", |it| it.conflicts_with_all(NOT_OF_PICTURES))
 }
 
-/// What is known of the visits to a calibrated robot.
+/// Knowledge about the visits to a calibrated robot.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "With --purpose drift")]
 pub(crate) struct VisitArgs {
     /// Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, requires = "purpose")]
     pub(crate) repeatability: Option<f64>,
-    /// Whether the tool with its targets will be on the flange as it was [default: same]
+    /// State of the tool with its targets at the visits: same if it stays on the flange [default: same]
     #[arg(long, value_parser = one_of(TOOL), value_name = "HOW", requires = "purpose", action = clap::ArgAction::Set)]
     pub(crate) tool: Option<bool>,
     /// Rows of an earlier visit whose configurations may be repeated [default: the measurements that the calibration was made of]
@@ -136,7 +136,7 @@ pub(crate) struct VisitArgs {
     pub(crate) reference: Vec<PathBuf>,
 }
 
-/// Where the measuring device is, or whether it will stand where it stood.
+/// Position of the measuring device, or known if it will not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PlannedDevice {
     /// A place in the robot's base frame, metres.
@@ -173,23 +173,23 @@ pub(crate) struct FitArgs {
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
     pub(crate) device_frame: DeviceFrameKnowledge,
-    /// How far the axes may be from the model's (the prior of the fit): standard deviations of their directions and places, or none
+    /// Deviations of the axes from the model (the prior of the fit): standard deviations of their directions and places, or none
     #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
-    /// What joints are expected to do beyond geometry: auto and all terms of the common sizes, off nothing, or groups with their sizes, as of
+    /// Joint effects that are expected beyond geometry: auto and all terms of the common sizes, off nothing, or groups with their sizes, as of
     /// poecal calibrate
     #[arg(long, value_name = "auto|all|off|GROUP[=SIZE],...", default_value = "auto")]
     pub(crate) corrections: Corrections,
-    /// Where gravity pulls, in the robot's base frame
+    /// Direction of gravity in the robot's base frame
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, default_value = "0,0,-1", allow_hyphen_values = true)]
     pub(crate) gravity: [f64; 3],
 }
 
-/// What a configuration must fulfil to be measured; all places in the robot's base frame.
+/// Conditions on a configuration that is measured; all places in the robot's base frame.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "What can be measured")]
 pub(crate) struct ConditionArgs {
-    /// How far every joint stays from its limits [default: 2deg,5mm; of a list that is stated none]
+    /// Distance of every joint from its limits [default: 2deg,5mm; of a list that is stated none]
     #[arg(long, value_name = "ANGLE,LENGTH")]
     pub(crate) margin: Option<LengthAndAngle>,
     /// Box into which no part of the robot may reach, by two corners (repeatable)
@@ -201,14 +201,14 @@ pub(crate) struct ConditionArgs {
     /// Least change of some joint between any two configurations
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad)]
     pub(crate) separation: Option<f64>,
-    /// Where the measuring device is; targets that links hide from it are left out. With --purpose drift: known where it will stand as it stood, as on
+    /// Position of the measuring device; targets that links hide from it are left out. With --purpose drift: known where it will stand as it stood, as on
     /// fixed nests, or refit
     #[arg(long, value_name = "X,Y,Zmm|known|refit", value_parser = planned_device, allow_hyphen_values = true)]
     pub(crate) device: Option<PlannedDevice>,
     /// Half the angle of the device's cone, about the direction from it to --device-aim
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, requires = "device")]
     pub(crate) device_half_angle: Option<f64>,
-    /// Where the device looks [default: the base]
+    /// Point at which the device is aimed [default: the base]
     #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, requires = "device_half_angle", allow_hyphen_values = true)]
     pub(crate) device_aim: Option<[f64; 3]>,
     /// Least and largest distance of the target from the device, like 0.5m:10m
@@ -220,7 +220,7 @@ pub(crate) struct ConditionArgs {
     /// The direction in which the target looks, in its own frame [default: 0,0,1]
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, requires = "target_half_angle", allow_hyphen_values = true)]
     pub(crate) target_normal: Option<[f64; 3]>,
-    /// Whether links may overlap by their shapes in the URDF: capsules around these, so that a little room is lost
+    /// Check of links that overlap by their shapes in the URDF: capsules around these, so that a little room is lost
     #[arg(long, value_parser = one_of(SELF_COLLISION), default_value = "avoid", action = clap::ArgAction::Set)]
     pub(crate) self_collision: bool,
 }

@@ -40,7 +40,7 @@ pub(crate) struct Report {
     /// File to write, a new one or one of poecal [default: report.html or certificate.html beside the calibration]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// What it states, beside and in place of what the calibration's record states, like serial=4711 or valid_until=2027-11-28
+    /// Entries beside and in place of those of the calibration's record, like serial=4711 or valid_until=2027-11-28
     /// (repeatable)
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
     pub(crate) record: Vec<(String, String)>,

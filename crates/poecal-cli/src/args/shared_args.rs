@@ -86,7 +86,7 @@ pub(crate) fn with_mapping(
     }
 }
 
-/// What columns of files mean.
+/// Meaning of columns in files.
 #[derive(Args, Debug)]
 #[command(next_help_heading = FILES)]
 pub(crate) struct ColumnArgs {
@@ -142,7 +142,7 @@ impl CameraArgs {
     }
 }
 
-/// What measurement files mean.
+/// Meaning of measurement files.
 #[derive(Args, Debug)]
 #[command(next_help_heading = FILES)]
 pub(crate) struct MeaningArgs {
@@ -154,7 +154,7 @@ pub(crate) struct MeaningArgs {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
     pub(crate) device_frames: FrameGrouping,
-    /// How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot stood still and
+    /// Match of rows of a joint file with rows of a measurement file [default: by name, else recordings by the times at which the robot stood still and
     /// lists by their order, if the nominal model fits no other match as well]
     #[arg(long, value_parser = one_of(JOIN))]
     pub(crate) join: Option<Join>,
@@ -211,7 +211,7 @@ impl MeaningArgs {
     }
 }
 
-/// How to read measurement files.
+/// Options for reading measurement files.
 #[derive(Args, Debug)]
 #[command(next_help_heading = FILES)]
 pub(crate) struct ReadingArgs {
@@ -229,7 +229,7 @@ impl ReadingArgs {
     }
 }
 
-/// Where a text goes.
+/// Destination of a text.
 #[derive(Args, Debug)]
 #[command(next_help_heading = RESULTS)]
 pub(crate) struct TextOutput {

@@ -30,11 +30,11 @@ pub(crate) struct Simulate {
     /// Standard deviations of each measured component; with --camera, of what the arm is off in each configuration
     #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg", allow_hyphen_values = true)]
     pub(crate) noise: LengthAndAngle,
-    /// What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres,
+    /// Joint effects beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres,
     /// sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout
     #[arg(long, value_name = "off|GROUP[=SIZE],...", value_parser = terms, default_value = "off")]
     pub(crate) terms: Sizes,
-    /// Where gravity pulls, in the robot's base frame
+    /// Direction of gravity in the robot's base frame
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, default_value = "0,0,-1", allow_hyphen_values = true)]
     pub(crate) gravity: [f64; 3],
     /// Number of measurements

@@ -23,10 +23,10 @@ pub(crate) struct TrackArgs {
     pub(crate) reference: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) meaning: MeaningArgs,
-    /// Whether the measuring device stands where it stood [default: known where the calibration was made in the base frame]
+    /// State of the measuring device: known if it did not move [default: known where the calibration was made in the base frame]
     #[arg(long, value_parser = one_of(DEVICE), value_name = "WHERE", action = clap::ArgAction::Set, help_heading = JUDGED)]
     pub(crate) device: Option<bool>,
-    /// Whether the tool with its targets is on the flange as it was
+    /// State of the tool with its targets: same if it stayed on the flange
     #[arg(long, value_parser = one_of(TOOL), value_name = "HOW", default_value = "same", action = clap::ArgAction::Set, help_heading = JUDGED)]
     pub(crate) tool: bool,
     /// Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: what repeats within a visit and what no
@@ -51,7 +51,7 @@ pub(crate) struct TrackArgs {
     /// File for the page of the visit: then and now, on one page of A4 to sign
     #[arg(long, value_name = "FILE", conflicts_with_all = ["plan", "recalibrate"], help_heading = RESULTS)]
     pub(crate) report: Option<PathBuf>,
-    /// What the page states of this visit, like operator=Mia (repeatable): the keys of `poecal calibrate`
+    /// Entries of the page on this visit, like operator=Mia (repeatable): the keys of `poecal calibrate`
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, conflicts_with_all = ["plan", "recalibrate"], help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
     /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]

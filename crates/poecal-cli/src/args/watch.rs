@@ -24,7 +24,7 @@ pub(crate) struct WatchArgs {
     /// Choose the next configuration among these (a table of joint readings) [default: random ones within the limits]
     #[arg(long, value_name = "FILE")]
     pub(crate) candidates: Option<PathBuf>,
-    /// Where the robot will work, as of poecal plan
+    /// Workspace, as of poecal plan
     #[arg(
         long,
         value_name = "limits|FILE|X,Y,Z:X,Y,Zmm",

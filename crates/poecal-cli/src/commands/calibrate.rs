@@ -217,7 +217,7 @@ fn makers_tolerance(path: &Path, console: &Console) -> Result<Tolerance> {
         [] => String::new(),
         joints => {
             let names: Vec<&str> = joints.iter().map(|(name, _)| name.as_str()).collect();
-            format!("; it also found that {} give, which --corrections sag fits", names.join(", "))
+            format!("; it also found compliance of {}, which --corrections sag fits", names.join(", "))
         }
     };
     console.note(format!(

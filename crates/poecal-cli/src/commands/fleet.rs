@@ -70,7 +70,7 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
         if arguments.watch.is_none() && failed.now + failed.passed == 0 && failed.before > 0 {
             let what = if failed.before == 1 { "robot failed" } else { "robots failed" };
             console.say(&format!(
-                "nothing new; {} {what} before, with the same files: {} says why, and --rerun calibrates all again\n",
+                "nothing new; {} {what} before, with the same files: {} states the reason, and --rerun calibrates all again\n",
                 failed.before,
                 place.display()
             ))?;

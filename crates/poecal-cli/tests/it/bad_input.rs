@@ -264,7 +264,7 @@ fn bad_use_gets_one_sentence_each() {
         case("calibrate robot.urdf good.csv --train-where stage", "",
              "found `stage` as the rows to fit, expected COLUMN=VALUE[,VALUE]"),
         case("calibrate robot.urdf good.csv --train-where stage=1", "",
-             "good.csv:1: found no column `stage`, expected one that says which rows are fitted; the columns are a, lift, b, x, y, z"),
+             "good.csv:1: found no column `stage`, expected one that states which rows are fitted; the columns are a, lift, b, x, y, z"),
         case("calibrate robot.urdf good.csv --train-where x=9", "",
              "good.csv: found no row with `9` in column `x`, expected at least one to fit"),
         case("calibrate robot.urdf good.csv --columns bad.toml", "sepparator = ';'\n",

@@ -193,7 +193,7 @@ impl ExplainedDirections<'_> {
         let (rows, configurations) = (self.setup.rows.len(), self.excitation.configurations);
         let description = if configurations < rows {
             format!(
-                "too few configurations: {rows} rows repeat {configurations}, which give {numbers} numbers for {unknowns} unknowns"
+                "too few configurations: {rows} rows repeat {configurations}, which are {numbers} numbers for {unknowns} unknowns"
             )
         } else {
             format!("too few rows: {numbers} numbers for {unknowns} unknowns")

@@ -38,7 +38,7 @@ impl ExplainedDirections<'_> {
             )
         } else {
             format!(
-                "the lengths that were measured are short: the size of the robot {words}; a longer or a more exact one gives it"
+                "the lengths that were measured are short: the size of the robot {words}; a longer or a more exact one determines it"
             )
         };
         self.add(Cause::NoLength, &[], 1, description);

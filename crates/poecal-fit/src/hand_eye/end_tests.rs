@@ -8,7 +8,7 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_testing::trials::trials;
 
 /// A simulated session of an arm of some reach.
-struct Session {
+struct SimulatedEnds {
     camera: CameraMounting,
     on_flange: Pose,
     flange: Vec<Pose>,
@@ -17,7 +17,7 @@ struct Session {
 
 /// An arm of 0.3 to 3 m. The mounted object is up to 0.5 m from the flange, at most 0.3 of the reach. The static object is at a usual position: a
 /// board within reach, a camera up to twice as far. Every second board has its z axis towards the camera.
-fn session(seed: u64) -> Session {
+fn session(seed: u64) -> SimulatedEnds {
     let mut draw = LinearCongruential::new(seed + 71);
     let camera = [CameraMounting::InHand, CameraMounting::Beside][seed as usize % 2];
     let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform_number();
@@ -31,7 +31,7 @@ fn session(seed: u64) -> Session {
     let count = 10 + (seed % 3) as usize * 5;
     let on_flange = Pose::new(rotation::exp(&draw.vector(1.0)), draw.vector(1.0).normalize() * held);
     let stays = Vector3::new(away * around.cos(), away * around.sin(), height);
-    let mut found = Session { camera, on_flange, flange: Vec::new(), target: Vec::new() };
+    let mut found = SimulatedEnds { camera, on_flange, flange: Vec::new(), target: Vec::new() };
     let in_base = match camera {
         CameraMounting::InHand => {
             Pose::new(rotation::exp(&draw.vector(0.3)) * rotation::about(0, side), stays)
@@ -88,7 +88,7 @@ enum End {
     Wrong,
 }
 
-impl Session {
+impl SimulatedEnds {
     fn end_session(
         &self,
         camera: CameraMounting,
@@ -151,7 +151,7 @@ fn a_camera_at_the_other_end_is_never_a_result() {
 
 #[test]
 fn inverted_poses_are_inverted_back_or_refused() {
-    let sessions: Vec<Session> = trials(120).seeds().map(session).collect();
+    let sessions: Vec<SimulatedEnds> = trials(120).seeds().map(session).collect();
     for known in KNOWN.into_iter().filter(|it| it.0.is_none()) {
         let (mut right, mut refused) = (0, 0);
         for (seed, session) in sessions.iter().enumerate() {

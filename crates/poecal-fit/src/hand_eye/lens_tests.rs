@@ -11,7 +11,7 @@ use poecal_model::camera::{
 use poecal_testing::trials::trials;
 
 /// A session of pictures with its truth.
-struct Session {
+struct SimulatedLens {
     camera: CameraMounting,
     on_flange: Pose,
     in_base: Pose,
@@ -50,7 +50,7 @@ fn drawn_lens(draw: &mut LinearCongruential) -> (Lens, f64, [f64; 2], [f64; 2]) 
 }
 
 /// A camera of some lens that sees a board of some size, with noise of corners and of the arm.
-fn session(seed: u64, views: Views) -> Session {
+fn session(seed: u64, views: Views) -> SimulatedLens {
     let mut draw = LinearCongruential::new(seed + 911);
     let camera = [CameraMounting::InHand, CameraMounting::Beside][seed as usize % 2];
     let (lens, focal, size, centre) = drawn_lens(&mut draw);
@@ -62,7 +62,7 @@ fn session(seed: u64, views: Views) -> Session {
     let far = 2.5 * focal * board.radius_m() / size[1];
     let middle = middle(&board.points);
     let mut found =
-        Session { camera, on_flange, in_base, lens, flange: Vec::new(), pictures: Pictures::default() };
+        SimulatedLens { camera, on_flange, in_base, lens, flange: Vec::new(), pictures: Pictures::default() };
     for _ in 0..5000 {
         if found.flange.len() == views.count {
             break;
@@ -110,7 +110,7 @@ fn session(seed: u64, views: Views) -> Session {
     found
 }
 
-impl Session {
+impl SimulatedLens {
     /// The session with a lens that is known, or a first guess of an unknown one.
     fn with_lens(&mut self, known: Option<Lens>) {
         let pictures = &mut self.pictures;

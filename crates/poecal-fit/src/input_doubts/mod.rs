@@ -74,7 +74,7 @@ impl InputDoubt {
 /// Remedy that states a unit beside the header: by an option if a column states none.
 fn state_it(unit_from: UnitSource, symbol: &str) -> String {
     match unit_from {
-        UnitSource::Si | UnitSource::Maker => format!("say --units {symbol}"),
+        UnitSource::Si | UnitSource::Maker => format!("state --units {symbol}"),
         UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => {
             "the unit in the mapping".to_owned()
         }

@@ -76,7 +76,7 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> SolvedPictures {
     if other >= EVIDENT * own {
         return SolvedPictures { notes: vec![placed], warnings };
     }
-    placed.push_str("; that is not evident: say it with --instrument CAMERA=LINK and --target BOARD=LINK");
+    placed.push_str("; that is not evident: state it with --instrument CAMERA=LINK and --target BOARD=LINK");
     warnings.insert(0, placed);
     SolvedPictures { notes: Vec::new(), warnings }
 }

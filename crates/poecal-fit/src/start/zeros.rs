@@ -58,13 +58,13 @@ impl JointZeros {
 
 /// A combination of signs with the zeros that fit best.
 #[derive(Clone)]
-struct Candidate {
+struct SignCandidate {
     signs: Vec<f64>,
     zeros: Vec<f64>,
     misfit: Misfit,
 }
 
-impl Candidate {
+impl SignCandidate {
     /// Negative logarithm of the posterior, but for a constant.
     fn score(&self) -> f64 {
         let squares: f64 = self.zeros.iter().map(|zero| (zero / PRIOR_RAD).powi(2)).sum();
@@ -116,12 +116,12 @@ impl<'a> Search<'a> {
     fn run(&self) -> Option<JointZeros> {
         let count = self.columns.len();
         let zeros = vec![0.0; count];
-        let mut all: Vec<Candidate> =
+        let mut all: Vec<SignCandidate> =
             self.combinations().into_iter().map(|signs| self.candidate(signs, &zeros)).collect();
         let before_m = all.first()?.misfit.total_m;
-        let by_score = |a: &Candidate, b: &Candidate| a.score().total_cmp(&b.score());
+        let by_score = |a: &SignCandidate, b: &SignCandidate| a.score().total_cmp(&b.score());
         all.sort_by(by_score);
-        let best: Vec<Candidate> = all.iter().take(BEST).cloned().collect();
+        let best: Vec<SignCandidate> = all.iter().take(BEST).cloned().collect();
         for candidate in best {
             for at in 0..count {
                 if !self.fitted.contains(&self.joints[at]) {
@@ -158,10 +158,14 @@ impl<'a> Search<'a> {
     }
 
     /// The zeros with the axes fitted too, as far as a prior allows.
-    fn refined(&self, found: &Candidate) -> Candidate {
+    fn refined(&self, found: &SignCandidate) -> SignCandidate {
         let (data, registered) = self.changed(&found.signs, &found.zeros);
         let by_axes = self.fitter.with_term_and_axes(&data, &registered, (&self.fitted, Term::OFFSET), AXES);
-        Candidate { signs: found.signs.clone(), zeros: self.zeros(&by_axes.0, &found.zeros), ..found.clone() }
+        SignCandidate {
+            signs: found.signs.clone(),
+            zeros: self.zeros(&by_axes.0, &found.zeros),
+            ..found.clone()
+        }
     }
 
     /// Combinations of signs: all of few joints, beginning with no joint turned.
@@ -183,11 +187,11 @@ impl<'a> Search<'a> {
     }
 
     /// The zeros that fit best with these signs, from a start.
-    fn candidate(&self, signs: Vec<f64>, start: &[f64]) -> Candidate {
+    fn candidate(&self, signs: Vec<f64>, start: &[f64]) -> SignCandidate {
         let (data, registered) = self.changed(&signs, start);
         let (estimate, misfit) =
             self.fitter.with_term(&data, &registered, (&self.fitted, Term::OFFSET), ITERATIONS);
-        Candidate { zeros: self.zeros(&estimate, start), signs, misfit }
+        SignCandidate { zeros: self.zeros(&estimate, start), signs, misfit }
     }
 
     /// The rows with signs and zeros, and the nominal robot registered to them.

@@ -76,7 +76,7 @@ fn syntax_error(error: &toml::de::Error, text: &str, path: &Path) -> Error {
             "found no `angle_unit`, expected one of rad, deg: units are stated, not guessed".to_owned()
         }
         _ => match complaint.strip_prefix("missing field ") {
-            Some(field) => format!("found no {field} in this table, expected it to be given"),
+            Some(field) => format!("found no {field} in this table, expected it to be stated"),
             None => complaint,
         },
     };

@@ -83,7 +83,7 @@ impl MappedField {
     /// A field for the unit of columns.
     pub(crate) fn unit(group: &'static str, key: &str, label: &str) -> Self {
         let quantity = UNITS.iter().find(|it| it.key == key).map_or(Unit::One, |it| it.of);
-        let stated = MappedChoice::new("", "as the file says, else SI");
+        let stated = MappedChoice::new("", "as the file states, else SI");
         let units = units_of(quantity).map(|unit| MappedChoice::new(unit.symbol(), unit.symbol()));
         let choices = std::iter::once(stated).chain(units).collect();
         MappedField { choices, ..MappedField::column(group, key, label, None) }

@@ -66,7 +66,7 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
     let mut made = frames.table(&bodies, "body or marker", opening)?;
     let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
     if let Some(stated) = stated.filter(|it| *it != frames.all.len()) {
-        made.say(format!("its head says {stated} frames, and it has {}", frames.all.len()));
+        made.say(format!("its head states {stated} frames, and it has {}", frames.all.len()));
     }
     Ok(made)
 }

@@ -158,7 +158,7 @@ impl<'t> Sets<'t> {
         }
         if self.parts.contains(&SetColumn::Angle) {
             made.say(
-                "the positions alone, since angles do not say their convention, which a mapping does (--columns)",
+                "the positions alone, since angles do not state their convention, which a mapping does (--columns)",
             );
         }
         Ok(made)

@@ -115,7 +115,7 @@ impl Pairing<'_> {
             words(order)
         );
         if !is_stated {
-            let names = if how == Join::Name { "" } else { ", or give both files a column `id`" };
+            let names = if how == Join::Name { "" } else { ", or add a column `id` to both files" };
             return self.refuse(format!(
                 "found files that can be joined in two ways: {message}; state the order by --join {option}{names}"
             ));

@@ -184,7 +184,7 @@ impl MeasurementReader<'_> {
             let is_mounted = self.robot.mounted.iter().any(|mount| mount.name == *name);
             let link = match is_mounted {
                 true => String::new(),
-                false => format!(": --target {name}=LINK says on which link of a URDF it is"),
+                false => format!(": --target {name}=LINK states its link in a URDF"),
             };
             names.push(format!("`{name}` ({} points of the sensor {}){link}", points.len(), body.sensor));
             match self.boards.iter().find(|own| own.name == *name) {

@@ -33,7 +33,7 @@ impl MeasurementReader<'_> {
                 None => data.moving.clocks.push(clock),
                 Some(known) if *known == clock => {}
                 Some(_) => {
-                    let message = "found a second recording in motion by one instrument, expected one, whose clock is an unknown of the fit: --device-frames per-file gives each file an instrument with a clock and a frame of its own, also where the instrument did not move between them";
+                    let message = "found a second recording in motion by one instrument, expected one, whose clock is an unknown of the fit: --device-frames per-file makes each file an instrument with a clock and a frame of its own, also where the instrument did not move between them";
                     return Err(ErrorKind::Measurement.error(message).in_file(path));
                 }
             }

@@ -283,7 +283,7 @@ fn points(data: &Dataset, times: &[f64]) -> Vec<TimeInterval> {
 /// The warning of readings without a unit that are degrees.
 fn took_degrees(path: &Path, reason: &str) -> String {
     format!(
-        "{}: took the joint readings, which state no unit, as degrees: {reason}; --units deg says so",
+        "{}: took the joint readings, which state no unit, as degrees: {reason}; --units deg states it",
         path.display()
     )
 }

@@ -164,7 +164,7 @@ fn set_rule(builder: &mut Builder<'_>, options: &ReadOptions, map: &ColumnMap) -
             SetRule::Unstated
         }
         (Some(rule), _) => {
-            SetRule::Where(builder.text_column(&rule.column, "that says which rows are fitted")?, rule)
+            SetRule::Where(builder.text_column(&rule.column, "that states which rows are fitted")?, rule)
         }
         (None, Some(column)) => SetRule::Words(column),
         (None, None) => SetRule::Unstated,

@@ -64,7 +64,7 @@ impl NumberReader {
                 };
                 let origin = match since {
                     Some(line) => format!("as in line {line}"),
-                    None => "as the mapping says".to_owned(),
+                    None => "as the mapping states".to_owned(),
                 };
                 return Err(format!("a number with a decimal {word} {origin}"));
             }
@@ -115,7 +115,7 @@ mod tests {
         let mut numbers = NumberReader::new(Some(DecimalSign::Point));
         assert_eq!(
             numbers.parse("1,5", 4),
-            Err("a number with a decimal point as the mapping says".to_owned())
+            Err("a number with a decimal point as the mapping states".to_owned())
         );
     }
 

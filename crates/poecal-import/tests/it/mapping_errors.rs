@@ -120,7 +120,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "set = { column = \"phase\", fit = [\"1\"] }",
-        "points.csv:1: found no column `phase`, expected one that says which rows are fitted; the columns are id, a, lift, b, x, y, z",
+        "points.csv:1: found no column `phase`, expected one that states which rows are fitted; the columns are id, a, lift, b, x, y, z",
     ),
     (
         "set = { column = \"id\", fit = [] }",

@@ -357,7 +357,7 @@ fn the_rows_to_fit_must_exist() {
     );
     assert_eq!(
         message("stagee=one"),
-        "points.csv:1: found no column `stagee`, expected one that says which rows are fitted; \
+        "points.csv:1: found no column `stagee`, expected one that states which rows are fitted; \
          the nearest name found is `stage`"
     );
     assert_eq!(

@@ -94,7 +94,7 @@ fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
         ];
         let plot = LinePlot {
             title: it.joint.clone(),
-            description: "The joint's error over its range by the calibrated and by the corrected model, and what its own terms say."
+            description: "The joint's error over its range by the calibrated and by the corrected model, and by its own terms."
                 .to_owned(),
             x: PlotAxis::new(&format!("{} of the joint", unit), AxisScale::Linear),
             y: PlotAxis::new(&format!("error, {of}"), AxisScale::Linear).with_values(&[0.0]),

@@ -137,7 +137,7 @@ fn plot(join: &JoinEntry) -> JoinPlot {
     JoinPlot {
         title: "What belongs to what".to_owned(),
         description: format!(
-            "Joint readings above, measurements below, with lines between the {} pairs; the words beside and the table below say the same.",
+            "Joint readings above, measurements below, with lines between the {} pairs; the words beside and the table below state the same.",
             join.paired
         ),
         x: PlotAxis::new(axis, AxisScale::Linear),

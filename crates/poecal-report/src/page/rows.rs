@@ -354,7 +354,7 @@ fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         p {
             (count(found.poses, "repeatability.poses")) " poses were measured three times or more ("
             (count(found.rows, "repeatability.rows")) " rows). In the manner of ISO 9283, " b { "accuracy" }
-            " is the distance from where a model says to the mean of the measured positions, and " b { "repeatability" }
+            " is the distance from the predicted position to the mean of the measured positions, and " b { "repeatability" }
             " the mean distance of these from their mean, and three standard deviations of it. ISO 9283 asks for 30 rows a pose, each \
              approached again; rows of a robot that stood still show the device's repeatability only."
         }

@@ -75,7 +75,7 @@ fn expected_table(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) ->
                 "Block bootstrap, " (count(drawn.drawings, format_args!("{of}.bootstrap.drawings")))
                 " samples: predictions scatter by "
                 (figure(drawn.sigma_position_mm, format_args!("{of}.bootstrap.sigma_position_mm")))
-                " mm (RMS). The covariance, for independent and equally noisy rows, gives "
+                " mm (RMS). The covariance, for independent and equally noisy rows, predicts "
                 (figure(drawn.formal_sigma_position_mm, format_args!("{of}.bootstrap.formal_sigma_position_mm"))) " mm."
             }
         }

@@ -134,7 +134,7 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
 }
 
 /// Limits of use of the corrections' offsets.
-const NOT_ENTERED: &str = "not for entering into a controller: `poecal offsets` gives the offsets that are";
+const NOT_ENTERED: &str = "not for entering into a controller: `poecal offsets` finds the offsets that are";
 
 /// Most effects that are listed.
 const SHOWN: usize = 6;
@@ -174,7 +174,7 @@ fn describe_corrected(out: &mut String, file: &CalibrationFile) {
         "joints do",
         told.map(|it| format!("{} ({} mm at the target, RMS)", it.words, number(it.effect_mm))),
     );
-    lines(out, "not told", &found.indistinguishable);
+    lines(out, "ambiguous", &found.indistinguishable);
 }
 
 /// Expected errors, cross-validation, and the effect of each joint's correction.

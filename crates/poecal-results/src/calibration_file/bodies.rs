@@ -213,7 +213,7 @@ impl CalibrationFile {
             if !is_on_it {
                 let (give, name) = (&joint.name, &robot.joints[of].name);
                 return refuse(format!(
-                    "found `{give}` as a give of `{name}`, expected it to stand on that joint"
+                    "found `{give}` as a compliance of `{name}`, expected it to follow that joint"
                 ));
             }
         }
@@ -225,7 +225,11 @@ impl CalibrationFile {
         let found = self.joints.iter().position(|entry| entry.name == name);
         let own = &self.joints[give].name;
         found.filter(|&of| of < give && self.joints[of].compliance_of.is_none()).map_or_else(
-            || refuse(format!("found `{own}` as a give of `{name}`, expected one of a joint before it")),
+            || {
+                refuse(format!(
+                    "found `{own}` as a compliance of `{name}`, expected one of a joint before it"
+                ))
+            },
             Ok,
         )
     }

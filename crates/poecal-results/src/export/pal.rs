@@ -44,7 +44,7 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<ExportedText> {
         "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
     if !is_same(robot, &remains) {
         let lost = format!(
-            "origins alone cannot say all of it (an axis was turned, or the tip has no fixed joint): the tip is off by up to {:.4} mm and {:.5} deg",
+            "origins alone cannot hold all of it (an axis was turned, or the tip has no fixed joint): the tip is off by up to {:.4} mm and {:.5} deg",
             remains.position_m * 1e3,
             remains.rotation_rad.to_degrees()
         );

@@ -148,7 +148,7 @@ const TOUCHED: &str = "1. **Before measuring**: `joints.csv` has random configur
 touches. When a dozen rows are in `measurements.csv`, ask which unknowns they determine, and what is missing.\n\n   ```sh\n   \
 poecal plan {model} --rows measurements.csv --kind {kind}{chain options}\n   ```";
 
-const KNOWN_DISTANCE: &str = "# The known distance of the two sockets of each place; without it the size of the robot is not told.\n#socket_distance = \"50mm\"\n\n";
+const KNOWN_DISTANCE: &str = "# The known distance of the two sockets of each place; without it the size of the robot is not determined.\n#socket_distance = \"50mm\"\n\n";
 const CONTACT: &str = "# Kind of contact for rows whose `contact` cell is empty: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";
 
 const ROTATION_NOISE: &str =

@@ -252,7 +252,7 @@ fn a_calibration_without_its_table_says_which_file_is_missing() {
     let error = Model::read(&path, &ChainSelection::default()).unwrap_err().to_string();
     assert!(
         error.ends_with(
-            "urcontrol.conf: found no such file, expected the controller's nominal table, without which calibration.conf says differences alone: check the path"
+            "urcontrol.conf: found no such file, expected the controller's nominal table, without which calibration.conf states differences alone: check the path"
         ),
         "{error}"
     );

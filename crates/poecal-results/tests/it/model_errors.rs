@@ -239,7 +239,7 @@ fn bad_toml_models_get_one_sentence_each() {
         (toml(axis, ""),
          "r.toml:1:1: found no [home], expected it: the tip's pose in the base at zero joint values"),
         (toml(axis, "home = { rpy = [0, 0, 0] }"),
-         "r.toml:8:8: found no `position` in this table, expected it to be given"),
+         "r.toml:8:8: found no `position` in this table, expected it to be stated"),
         (toml(axis, "home = { position = [0, 0, 0], rpy = [0, 0, 0], quaternion_xyzw = [0, 0, 0, 1] }"),
          "r.toml:8:38: [home] has more than one orientation, expected one of quaternion_xyzw, rpy and rotation"),
         (toml(axis, "home = { position = [0, 0, 0], quaternion_xyzw = [0, 0, 0, 2] }"),

@@ -70,7 +70,7 @@ fn write_board(arguments: &Detect, (spec, out): (&BoardSpec, &Path), console: &C
 
 /// Rotation under which a board is identical to itself, and an unambiguous alternative.
 fn looks_alike(spec: &BoardSpec) -> Option<(&'static str, &'static str)> {
-    const ODD: &str = "an even number of squares one way and an odd one the other tell both apart";
+    const ODD: &str = "an even number of squares one way and an odd one the other distinguish both";
     const DOTS: &str =
         "an asymmetric grid with an odd number of rows, a ChArUco board and an AprilGrid have no such doubt";
     let half = "180 degrees";

@@ -231,7 +231,7 @@ fn warn(all: &[DetectedPicture], console: &Console) {
         .collect();
     if !turned.is_empty() {
         console.warning(format!(
-            "turned {} as their files say (EXIF): {}; the lens must be that of pictures which are turned so",
+            "turned {} as their files state (EXIF): {}; the lens must be that of pictures which are turned so",
             pluralize(turned.len(), "picture"),
             first_few(&turned)
         ));

@@ -63,7 +63,7 @@ impl MessageClock {
         let MessageClock { is_log, unset } = self;
         let words = if is_log {
             format!(
-                "took the times of the log, since the stamps of {unset} messages are zero: these are later than what they say by an unknown delay"
+                "took the times of the log, since the stamps of {unset} messages are zero: these are later than the measurements by an unknown delay"
             )
         } else {
             format!("left out {unset} messages with the stamp zero")

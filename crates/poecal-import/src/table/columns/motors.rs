@@ -21,11 +21,11 @@ const POSITION: &str = ".pos";
 /// Motors by their names, as `~/.cache/huggingface/lerobot/calibration/robots/TYPE/ID.json` has them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(transparent)]
-pub(crate) struct Motors(BTreeMap<String, Motor>);
+pub(crate) struct Motors(BTreeMap<String, MotorReadings>);
 
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Motor {
+struct MotorReadings {
     id: u8,
     drive_mode: u8,
     #[expect(dead_code, reason = "part of the file; readings have it off already")]
@@ -69,7 +69,7 @@ impl Motors {
     }
 
     /// The motor of a joint: models name joints as motors, or by their numbers.
-    fn motor(&self, name: &str) -> Option<(&String, &Motor)> {
+    fn motor(&self, name: &str) -> Option<(&String, &MotorReadings)> {
         let by_number = || self.0.iter().find(|(_, motor)| name.parse() == Ok(motor.id));
         self.0.get_key_value(name).or_else(by_number)
     }

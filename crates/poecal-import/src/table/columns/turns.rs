@@ -33,7 +33,7 @@ pub(crate) fn note(layout: &ColumnLayout) -> Option<String> {
     let usual: Vec<&str> = usual.map(|it| it.unit.symbol()).filter(|it| *it != "1").collect();
     let units = match usual.as_slice() {
         [] => String::new(),
-        some => format!(", in {}, since no unit is stated: --units says another", some.join(" and ")),
+        some => format!(", in {}, since no unit is stated: --units states another", some.join(" and ")),
     };
     let ignored: Vec<String> = names.iter().map(|it| format!("\"{it}\"")).collect();
     Some(format!(
