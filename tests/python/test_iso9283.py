@@ -152,5 +152,102 @@ def test_a_planned_test_is_measured(tmp_path):
     found = figures(table(tmp_path, filled, header), "--robot", model)
     assert len([key for key in found if key[0] == "AP"]) == 5
     assert all(it["found"] < 0.02 for key, it in found.items() if key[0] == "AP")
+    plane = subprocess.run([*command[:5], "--workspace", "700,-150,500:900,150,500mm", "--count", "2", "--json"], capture_output=True, text=True)
+    assert plane.returncode == 0, plane.stderr
+    told = json.loads(plane.stdout[: plane.stdout.rindex("}") + 1])
+    assert told["sides_mm"] == pytest.approx([200, 300, 0]) and told["cycles"] == 2
+    assert [pose["position_mm"] for pose in told["poses"]][1] == pytest.approx([880, 120, 500])
+    box = subprocess.run([*command[:5], "--workspace", "700,-150,400:900,150,500mm"], capture_output=True, text=True)
+    assert box.returncode == 2 and "or a plane, of which one is zero" in box.stderr, box.stderr
     far = subprocess.run([*command[:5], "--workspace", "2000,0,0:3000,1000,1000mm"], capture_output=True, text=True)
     assert far.returncode == 2 and "out of reach or beyond limits" in far.stderr, far.stderr
+
+
+def moved(rows: list[list[str]], share: float) -> list[list[str]]:
+    """The same test with the errors of positions reduced to a share, in the device frame that fits the commands best."""
+    commanded, measured = (np.array([[float(cell) for cell in row[at : at + 3]] for row in rows]) for at in (2, 5))
+    a, b = commanded - commanded.mean(0), measured - measured.mean(0)
+    u, _, v = np.linalg.svd(a.T @ b)
+    ideal = a @ (u @ np.diag([1, 1, np.linalg.det(u @ v)]) @ v) + measured.mean(0)
+    reduced = ideal + share * (measured - ideal)
+    return [[*row[:5], *(f"{cell:.4f}" for cell in it), *row[8:]] for row, it in zip(rows, reduced, strict=True)]
+
+
+def test_a_test_before_stands_beside(tmp_path):
+    header, rows = recorded()
+    after = table(tmp_path, moved(rows, 0.25), header)
+    found, before = figures(after, "--reference", RECORDED), figures(RECORDED)
+    assert {key for key in found if "before" in found[key]} == set(found) == set(before)
+    for key, it in found.items():
+        assert it["before"]["found"] == before[key]["found"]
+    assert found["AP", "P3"]["found"] == pytest.approx(0.25 * before["AP", "P3"]["found"], rel=0.02)
+    told = run(after, "--reference", RECORDED).stdout
+    assert "before, mm" in told and "beside" in told
+    other = [list(row) for row in rows]
+    for row in other:
+        row[2] = f"{float(row[2]) + 5:.3f}"
+    ended = run(table(tmp_path, other, header), "--reference", RECORDED)
+    assert ended.returncode == 2 and "commanded 5.000 mm from its command in the rows of --reference" in ended.stderr, ended.stderr
+    assert run(RECORDED, "--reference", RECORDED).returncode == 2
+
+
+def test_pages_have_figures_pictures_and_record(tmp_path):
+    header, rows = recorded()
+    after = table(tmp_path, moved(rows, 0.25), header)
+    stated = ["--record", "robot=Elbow <6>", "--record", "warm_up=1 h", "--sigma-position", "0.01mm", "--accept", "AP:0.2mm"]
+    report, certificate = tmp_path / "report.html", tmp_path / "certificate.html"
+    for page, words in [(report, []), (certificate, ["--certificate"])]:
+        ended = run(after, "--reference", RECORDED, *stated, "--report", page, *words)
+        assert ended.returncode == 0, ended.stderr
+        text = page.read_text()
+        assert "Elbow &lt;6&gt;" in text and "1 h" in text and "100 %" in text and "PASS" in text and "<script" not in text
+        found = json.loads(run(after, "--reference", RECORDED, *stated, "--json").stdout)
+        largest = max((it for it in found["figures"] if it["figure"] == "AP"), key=lambda it: it["found"])
+        assert f"{largest['found']:.4f}" in text and f"{largest['before']['found']:.4f}" in text
+    drawn = [page.read_text().count("<svg") for page in (report, certificate)]
+    # The cube from two sides, on the certificate and in the report; each of five poses from two sides.
+    assert drawn == [2 + 2 + 10, 2]
+    assert report.read_text().count("<dt>Warm-up</dt>") == 2
+    ended = run(RECORDED, "--report", report)
+    assert ended.returncode == 2 and "report.html" in ended.stderr, ended.stderr
+    assert run(RECORDED, "--certificate").returncode == 2
+    ended = run(RECORDED, "--record", "speed=50 %", "--report", tmp_path / "none.html")
+    assert ended.returncode == 2 and "found the speed `100 %` and `50 %` in the record" in ended.stderr, ended.stderr
+    assert not (tmp_path / "none.html").exists()
+
+
+def test_corners_in_pictures_are_poses(tmp_path):
+    """Five of the pictures, each taken twelve times; their camera and board are those of the calibration."""
+    folder = ROOT / "examples/howto"
+    model = ROOT / "examples/elbow/robot.urdf"
+    pictures, corners = folder / "pictures.csv", folder / "corners.csv"
+    known = ["--camera", folder / "lens.csv", "--markers", "chessboard:6x5:40mm"]
+    made = [program(), "calibrate", model, pictures, corners, *known, "--out", tmp_path / "calibrated"]
+    ended = subprocess.run([str(word) for word in made], capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr
+    header, *poses = pictures.read_text().splitlines()
+    seen: dict[str, list[list[str]]] = {}
+    for line in corners.read_text().splitlines()[1:]:
+        seen.setdefault(line.split(",")[0], []).append(line.split(","))
+    rng = np.random.default_rng(3)
+    listed, taken = [f"pose,cycle,{header}"], ["image,target,u[px],v[px]"]
+    for cycle in range(12):
+        for k, line in enumerate(poses[:5]):
+            image, joints = line.split(",", 1)
+            listed.append(f"P{k + 1},{cycle + 1},{cycle}-{k}.png,{joints}")
+            for _, name, u, v in seen[image]:
+                du, dv = rng.normal(size=2) * 0.02
+                taken.append(f"{cycle}-{k}.png,{name},{float(u) + du:.3f},{float(v) + dv:.3f}")
+    rows, points = tmp_path / "poses.csv", tmp_path / "seen.csv"
+    rows.write_text("\n".join(listed) + "\n")
+    points.write_text("\n".join(taken) + "\n")
+    calibration = tmp_path / "calibrated/calibration.json"
+    found = figures(rows, points, "--robot", calibration)
+    assert found == figures(points, rows, "--robot", calibration)
+    ap = [it for (figure, _), it in found.items() if figure == "AP"]
+    assert len(ap) == 5 and all(it["cycles"] == 12 and it["corrected"]["found"] < 3 for it in ap)
+    assert max(it["found"] for it in ap) > 2 * max(it["corrected"]["found"] for it in ap)
+    rows.write_text("\n".join(listed).replace("P1,3,2-0.png", "P1,3,2-x.png").replace("P2,3,2-1.png", "P2,3,2-0.png").replace("2-x.png", "2-1.png") + "\n")
+    assert run(rows, points, "--robot", calibration).returncode == 2
+    alone = run(rows, points, "--robot", model)
+    assert alone.returncode == 2 and "no camera, expected --camera FILE" in alone.stderr, alone.stderr

@@ -59,6 +59,7 @@ judged: poecal.Validation = calibration.validate(rows)
 error: float | None = judged.position_rms_mm
 whole: object = judged["verdict"]
 planned: poecal.Plan = poecal.plan(robot, count=8, floor_height_mm="-70cm", margin_deg_mm=(5, "1cm"))
+test: poecal.TestPlan = poecal.plan(robot, purpose="iso9283", workspace_box_mm=[[700, -100, 400], [900, 100, 400]])
 visit: poecal.VisitPlan = poecal.plan(calibration, purpose="drift", device="known", repeatability_mm=0.03)
 found_again: list[poecal.Findings] = [offsets, judged, visit, poecal.check(robot), poecal.track(calibration, rows)]
 in_texts = poecal.calibrate("robot.urdf", "points.csv", sigma_position_mm="0.05mm", tolerance_deg_mm="0.5deg,5mm", corrections={"sag": "0.05deg"})

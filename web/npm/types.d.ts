@@ -142,7 +142,7 @@ export interface CalibrateOptions {
   report?: Value | readonly Value[];
   /**
    * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
-   * instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
+   * instrument_calibrated, tool, payload, speed, warm_up, operator, date, place, temperature, valid_until or note
    */
   record?: Value | readonly Value[];
 }
@@ -351,8 +351,8 @@ export interface PlanOptions {
   /**
    * Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose
    * repeats show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones. iso9283
-   * lists P1 to P5 of the largest cube within reach and limits, or of that of --workspace, in --count cycles, as a table to fill in
-   * [possible values: drift, iso9283]
+   * lists P1 to P5 of the largest cube within reach and limits, or of the cube or plane (one side of zero) of --workspace, in --count
+   * cycles, as a table to fill in [possible values: drift, iso9283]
    */
   purpose?: Value | readonly Value[];
   /** Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration] */
@@ -1689,12 +1689,16 @@ export type Record = {
   robot?: string | null;
   /** Its serial number. */
   serial?: string | null;
+  /** The speed of a test, like `100 %` or `500 mm/s`. */
+  speed?: string | null;
   /** Temperature there, with its unit, `21.5 °C` or `21.5 ± 0.5 °C`. */
   temperature?: string | null;
   /** The tool that was on the flange. */
   tool?: string | null;
   /** Day until which the certificate is valid, `YYYY-MM-DD`. */
   valid_until?: string | null;
+  /** Warm-up of the robot before a test. */
+  warm_up?: string | null;
 };
 
 /** What of a joint was calibrated anew. */

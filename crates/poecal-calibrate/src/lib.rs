@@ -69,8 +69,8 @@ pub use corrections::{
 };
 pub use events::{Event, EventKind, RepairLimit, RepairLimits, Repairs, family};
 pub use iso9283::{
-    FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, STANDARD_CYCLES, TestFigure, TestLabels,
-    TestRow, iso9283,
+    FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, PoseCluster, STANDARD_CYCLES, TestFigure,
+    TestLabels, TestRow, iso9283,
 };
 pub use poecal_model::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use robust::{Loss, RobustLoss, Robustness, RowInfluence, RowJudgement, row_influence};

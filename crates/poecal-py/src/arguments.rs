@@ -36,7 +36,7 @@ macro_rules! named {
 }
 
 named! {
-    accept accept_model actual angle_unit angular_first base_link body camera cameras check columns contact controller_base
+    accept accept_model actual angle_unit angular_first base_link body camera cameras certificate check columns contact controller_base
     controller_flange convention corrections count criterion device device_aim_mm device_frame device_frames device_half_angle_deg device_mm
     distance_mm earlier error_position_mm error_rotation_deg experiment fix flange floor_height_mm folder force format formulation
     frame_names free gravity harmonics hash held_out held_out_count history id ids ignore_sets instrument_noise instruments join kind kinds

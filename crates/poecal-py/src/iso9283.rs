@@ -1,19 +1,21 @@
 //! `iso9283`: accuracy and repeatability as a data sheet states them.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-use poecal_calibrate::{FigureLimit, iso9283 as tested};
+use poecal_calibrate::FigureLimit;
 use poecal_cli::words;
 use poecal_import::ReadOptions;
 use poecal_report as report;
-use poecal_results::iso9283::{TestOptions, TestResult, read_test};
+use poecal_results::iso9283::{StatedTest, TestOptions, judge_test};
+use poecal_results::output::ExistingFiles;
 use poecal_results::record::Record;
-use poecal_results::validation::ValidationInputs;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
 use crate::errors::{argument, raise};
 use crate::findings::Findings;
+use crate::output_places::reserved_file;
 use crate::paths;
 use crate::words::{one_of, sigmas};
 
@@ -36,6 +38,14 @@ use crate::words::{one_of, sigmas};
 ///     Limits that figures must keep, like "AP:0.5mm,RP:0.05mm".
 /// record
 ///     What is stated of the test, by the keys of `poecal calibrate --record`.
+/// earlier
+///     Path of the rows of the same test before the calibration, whose figures stand beside; with a calibration.json also what they predict.
+/// report
+///     File for a page (HTML) with all figures, the cube and the scatter of each pose; its print begins with a certificate.
+/// certificate
+///     Whether that page is the certificate alone, one page of A4.
+/// force
+///     Whether to write over a file that exists.
 ///
 /// Returns
 /// -------
@@ -43,7 +53,8 @@ use crate::words::{one_of, sigmas};
 ///     The "figures", each with "found", "from" and "to" in "unit", and the "decision" on the limits.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
-#[pyo3(signature = (measurements, robot=None, *, device_frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, units=None, accept=None, record=None))]
+#[pyo3(signature = (measurements, robot=None, *, device_frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, units=None, accept=None, record=None,
+                    earlier=None, report=None, certificate=false, force=false))]
 pub(crate) fn iso9283(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::measurements)] measurements: PathBuf,
@@ -54,7 +65,17 @@ pub(crate) fn iso9283(
     #[pyo3(from_py_with = arg::units)] units: Option<&str>,
     #[pyo3(from_py_with = arg::accept)] accept: Option<&str>,
     #[pyo3(from_py_with = arg::record)] record: Option<Record>,
+    #[pyo3(from_py_with = arg::earlier)] earlier: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::report)] report: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::certificate)] certificate: bool,
+    #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<Findings> {
+    if certificate && report.is_none() {
+        return Err(argument(
+            "certificate",
+            "found it without report, expected the file of the page beside it",
+        ));
+    }
     let robot = robot.map(paths::robot).transpose()?;
     let model = robot.as_ref().map(|robot| &*robot.get().model);
     let frame = one_of("device_frame", device_frame, words::TEST_FRAME)?;
@@ -66,20 +87,20 @@ pub(crate) fn iso9283(
     let mut reading = ReadOptions::default();
     units.map_or(Ok(()), |units| reading.state_units(units)).map_err(raise)?;
     let options = TestOptions { reading, frame, sigma_position_m, sigma_rotation_rad };
-    let stated = record.unwrap_or_default();
+    let paths: Vec<&Path> = std::iter::once(&measurements).chain(&earlier).map(PathBuf::as_path).collect();
+    let page =
+        report.map(|path| reserved_file(py, &path, ExistingFiles::from_switch(force), &paths)).transpose()?;
+    let record = record.unwrap_or_default();
+    let robot = model.map(|model| (model.path.clone(), BTreeMap::new()));
+    let stated = StatedTest { limits, record, robot, command: None };
+    let files = (std::slice::from_ref(&measurements), earlier.as_slice());
     let found = py.detach(|| {
-        let file = read_test(std::slice::from_ref(&measurements), model, &options)?;
-        let found = tested(&file.rows, file.base_from_device)?;
-        let inputs = ValidationInputs {
-            calibration: model.map_or_else(String::new, |model| model.path.display().to_string()),
-            measurements: vec![measurements.display().to_string()],
-            sha256: file.read.sha256.clone(),
-            files: file.read.inputs(),
-            ..ValidationInputs::default()
-        };
-        let mut test = TestResult::new(&found, frame, &limits, inputs, (file.speed.clone(), stated))?;
-        test.warnings.extend(file.warnings);
-        Ok((test.to_text()?, test))
+        let test = judge_test(files, model, &options, stated)?;
+        if let Some(page) = page {
+            let make = if certificate { report::test_certificate_page } else { report::test_page };
+            page.write(make(&test.result, &test.found, test.before.as_ref()))?;
+        }
+        Ok((test.result.to_text()?, test.result))
     });
     let (json, test) = found.map_err(raise)?;
     let told = Findings::of_json("Iso9283", report::iso9283(&test), report::iso9283_answer(&test), json);

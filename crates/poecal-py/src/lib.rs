@@ -36,7 +36,7 @@ use measurements::{from_arrays, from_dataframe, guess};
 
 use calibration::{accuracy, findings, recalibrate, residuals};
 
-use plan::{plan_options, plan_result, visit_plan};
+use plan::{plan_options, plan_result, test_plan, visit_plan};
 
 use pyo3::prelude::*;
 
@@ -112,6 +112,8 @@ mod _poecal {
     use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::{Simulation, simulate};
+    #[pymodule_export]
+    use crate::test_plan::TestPlan;
     #[pymodule_export]
     use crate::visit_plan::_write_text;
     #[pymodule_export]

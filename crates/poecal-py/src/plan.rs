@@ -2,6 +2,7 @@
 
 pub(crate) mod plan_options;
 pub(crate) mod plan_result;
+pub(crate) mod test_plan;
 pub(crate) mod visit_plan;
 
 mod session;
@@ -28,7 +29,8 @@ use crate::visit_plan::VisitOptions;
 /// robot
 ///     The robot, or the path of its model; a calibration, or a robot that was read from a calibration.json, plans the next session of it.
 /// purpose
-///     "calibration", or "drift" for visits to a calibration.
+///     "calibration", "drift" for visits to a calibration, or "iso9283" for a test of ISO 9283: P1 to P5 of the largest cube, with `count` cycles (default
+///     30), `floor_height_mm`, and `workspace_box_mm` for a stated cube, or a plane, of which one side is zero.
 /// kind
 ///     Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
 /// count
@@ -99,7 +101,7 @@ use crate::visit_plan::VisitOptions;
 ///
 /// Returns
 /// -------
-/// Plan or VisitPlan
+/// Plan, VisitPlan or TestPlan
 ///     The rows in the order of their measurement, with the expected errors; with "drift" the detectable shift of each joint. Only configurations are
 ///     checked, never the path between them.
 #[pyfunction]

@@ -47,7 +47,7 @@ def test_every_public_function_answers(made):
     """Each that has keywords is called with one that has a letter too many."""
     calibration = poecal.calibrate(made.nominal, made.measurements)
     objects = [made.nominal, made.measurements, made, calibration, calibration.residuals, calibration.covariance, calibration.verdict]
-    objects += [poecal.plan(made.nominal, count=8), poecal.Watch(made.nominal)]
+    objects += [poecal.plan(made.nominal, count=8), poecal.plan(made.nominal, purpose="iso9283"), poecal.Watch(made.nominal)]
     owners = [(poecal._poecal, ()), *((type(it), (it,)) for it in objects)]
     asked = []
     for owner, this in owners:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import poecal
@@ -137,7 +138,7 @@ def test_mistakes_in_planned_visits_are_one_sentence(tmp_path):
         ({"purpose": "drift", "count": 41}, "40 measured configurations"),
         ({"purpose": "drift", "count": 0}, "count: found 0, expected 1 to 1000"),
         ({"purpose": "drift", "device": "moved"}, "device: found `moved`, expected one of refit, known"),
-        ({"purpose": "drifts"}, "purpose: found `drifts`, expected one of calibration, drift; did you mean `drift`?"),
+        ({"purpose": "drifts"}, "purpose: found `drifts`, expected one of calibration, drift, iso9283; did you mean `drift`?"),
         ({"device": "known"}, 'device: found it without purpose="drift"'),
     ]:
         with pytest.raises(poecal.Error, match=words.replace("?", r"\?")):
@@ -166,3 +167,43 @@ def test_a_plan_is_made_of_a_path_and_of_a_calibration(tmp_path):
     next_session = poecal.plan(calibration, count=8, held_out_count=2)
     assert next_session.to_dict()["robot_error_is_a_guess"] is False
     assert next_session.expected_calibrated_mm == poecal.plan(read, count=8, held_out_count=2).expected_calibrated_mm
+
+
+def test_a_planned_test_is_that_of_the_program(tmp_path):
+    made = poecal.simulate(elbow(), kind="point", count=10, seed=7)
+    made.write(tmp_path / "made")
+    model = tmp_path / "made/nominal.toml"
+    options = [
+        ({"floor_height_mm": 100, "count": 4}, ["--floor-height", "100mm", "--count", "4"]),
+        ({"workspace_box_mm": [[700, -150, 500], [900, 150, 500]]}, ["--workspace", "700,-150,500:900,150,500mm"]),
+    ]
+    for at, (given, words) in enumerate(options):
+        planned = poecal.plan(model, purpose="iso9283", **given)
+        table, listing = tmp_path / f"{at}.csv", tmp_path / f"{at}.src"
+        command = [sys.executable, "-m", "poecal", "plan", str(model), "--purpose", "iso9283", *words, "--out", str(table), "--program", str(listing), "--json"]
+        told = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+        assert planned.to_dict() == told and planned.cycles == told["cycles"]
+        own, program = tmp_path / f"own-{at}.csv", tmp_path / f"own/{at}.src"
+        program.parent.mkdir(exist_ok=True)
+        planned.write(own)
+        planned.write_program(program)
+        assert own.read_text() == table.read_text() and program.read_text() == listing.read_text()
+        assert planned.joints.shape == (5 * planned.cycles, 6)
+        tips = poecal.Robot.read(model).forward_kinematics(planned.joints)[:5, :3, 3]
+        assert np.allclose(1e3 * tips[::-1], [pose["position_mm"] for pose in told["poses"]], atol=1e-6)
+    for name, value in [("seed", 3), ("candidates", [[0.0] * 6]), ("kind", "pose")]:
+        with pytest.raises(poecal.Error, match=f"^{name}: found it with purpose=\"iso9283\", expected only count, workspace_box_mm and floor_height_mm"):
+            poecal.plan(model, purpose="iso9283", **{name: value})
+
+
+def test_a_test_is_written_as_pages(tmp_path):
+    rows = Path(__file__).resolve().parents[3] / "examples/howto/iso9283.csv"
+    page, certificate = tmp_path / "page.html", tmp_path / "certificate.html"
+    found = poecal.iso9283(rows, report=page, record={"warm_up": "1 h"})
+    poecal.iso9283(rows, report=certificate, certificate=True)
+    assert f"{found.ap_mm:.4f}" in page.read_text() and "1 h" in page.read_text()
+    assert certificate.read_text().count("<svg") < page.read_text().count("<svg")
+    with pytest.raises(poecal.FileError):
+        poecal.iso9283(rows, report=page)
+    with pytest.raises(poecal.Error, match="^certificate: found it without report"):
+        poecal.iso9283(rows, certificate=True)

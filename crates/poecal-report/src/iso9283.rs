@@ -16,7 +16,8 @@ const WIDTHS: [usize; 2] = [14, 11];
 #[must_use]
 pub fn iso9283(test: &TestResult) -> String {
     let mut out = String::new();
-    let files = test.inputs.measurements.join(", ");
+    let beside = if test.reference.is_empty() { "" } else { ", beside " };
+    let files = format!("{}{beside}{}", test.inputs.measurements.join(", "), test.reference.join(", "));
     let standard = if test.cycles < STANDARD_CYCLES { ", fewer than the 30 of the standard" } else { "" };
     let words = format!("ISO 9283:1998, {} cycles{standard}; {} rows in {files}", test.cycles, test.rows);
     line(&mut out, "test", &words);
@@ -25,15 +26,8 @@ pub fn iso9283(test: &TestResult) -> String {
         line(&mut out, "conditions", &conditions);
     }
     line(&mut out, "frame", &frame_words(test));
-    for (name, symbol, clause, words) in FigureName::ALL {
-        for unit in ["mm", "deg"] {
-            let is_own =
-                |it: &&FigureEntry| it.unit == unit && it.figure.trim_end_matches(['a', 'b', 'c']) == symbol;
-            let own: Vec<&FigureEntry> = test.figures.iter().filter(is_own).collect();
-            if !own.is_empty() {
-                lines(&mut out, symbol, figure_lines(name, &own, &format!("{words} ({clause})")));
-            }
-        }
+    for group in groups(test) {
+        lines(&mut out, group.name.symbol(), group.lines());
     }
     for limit in &test.limits {
         let BoundsEntry { found, from, to } = limit.worst;
@@ -65,19 +59,15 @@ pub fn iso9283_answer(test: &TestResult) -> String {
     format!("{}; {} cycles", words.join(", "), test.cycles)
 }
 
-/// What is stated of the test.
+/// Statements about the test.
 fn conditions(test: &TestResult) -> String {
     let entries = test.record.entries();
-    let mut words: Vec<String> =
-        entries.iter().map(|(_, label, text)| format!("{}: {text}", label.to_lowercase())).collect();
-    if !test.speed.is_empty() {
-        words.insert(0, format!("speed: {}", test.speed));
-    }
-    words.join("; ")
+    let words = entries.iter().map(|(_, label, text)| format!("{}: {text}", label.to_lowercase()));
+    words.collect::<Vec<_>>().join("; ")
 }
 
 /// The frame in which accuracy is stated.
-fn frame_words(test: &TestResult) -> String {
+pub(crate) fn frame_words(test: &TestResult) -> String {
     let (all, absorbed) = (test.frame.coordinates, test.frame.absorbed);
     match test.frame.known {
         TestFrame::Base => "the base, in which the device measures".to_owned(),
@@ -95,7 +85,7 @@ fn frame_words(test: &TestResult) -> String {
 #[derive(Clone, Debug, Serialize)]
 pub struct TestPlan {
     middle_mm: [f64; 3],
-    side_mm: f64,
+    sides_mm: [f64; 3],
     cycles: usize,
     poses: Vec<TestPlanPose>,
 }
@@ -119,10 +109,27 @@ impl TestPlan {
         };
         TestPlan {
             middle_mm: cube.middle_m.map(|it| 1e3 * it),
-            side_mm: 1e3 * cube.side_m,
+            sides_mm: cube.sides_m.map(|it| 1e3 * it),
             cycles,
             poses: cube.poses.iter().enumerate().map(pose).collect(),
         }
+    }
+
+    /// Cube or plane, and its sides that are not zero, millimetres.
+    fn shape(&self) -> (&'static str, String) {
+        let sides: Vec<String> =
+            self.sides_mm.iter().filter(|it| **it > 1e-3).map(|it| format!("{it:.0}")).collect();
+        match sides.as_slice() {
+            [across, up] => ("plane", format!("{across} × {up}")),
+            _ => ("cube", sides.first().cloned().unwrap_or_default()),
+        }
+    }
+
+    /// The shape and the number of cycles, in a few words.
+    #[must_use]
+    pub fn answer(&self) -> String {
+        let (name, size) = self.shape();
+        format!("{name} of {size} mm, {} cycles of P5 to P1", self.cycles)
     }
 
     /// The same as text of lines up to 80 characters.
@@ -130,11 +137,11 @@ impl TestPlan {
     pub fn text(&self) -> String {
         let mut out = String::new();
         let [x, y, z] = self.middle_mm;
-        let cube = format!(
-            "{:.0} mm along the base, middle at ({x:.0}, {y:.0}, {z:.0}) mm; all five poses within reach and limits (ISO 9283:1998, 6.8)",
-            self.side_mm
+        let (name, size) = self.shape();
+        let words = format!(
+            "{size} mm along the base, middle at ({x:.0}, {y:.0}, {z:.0}) mm; all five poses within reach and limits (ISO 9283:1998, 6.8)"
         );
-        line(&mut out, "cube", &cube);
+        line(&mut out, name, &words);
         for it in &self.poses {
             let [x, y, z] = it.position_mm;
             line(&mut out, &it.pose, &format!("({x:.1}, {y:.1}, {z:.1}) mm, the tip"));
@@ -161,32 +168,65 @@ fn bounds_words(bounds: &BoundsEntry, unit: &str) -> String {
     format!("{} {unit} ({} to {})", format_signed(found), format_signed(from), format_signed(to))
 }
 
-/// The largest of a figure, without noise and corrected.
-fn figure_lines(name: FigureName, own: &[&FigureEntry], words: &str) -> Vec<String> {
-    let largest = |of: fn(&FigureEntry) -> Option<BoundsEntry>| {
-        let size = |it: &FigureEntry| of(it).map_or(-1.0, |it| it.found.abs());
-        let it = own.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-        let axis = it.figure.strip_prefix(name.symbol()).unwrap_or_default();
-        let about = if axis.is_empty() { String::new() } else { format!(" about {axis}") };
-        let at = if it.pose.contains('-') {
-            format!("from {}", it.pose.replace('-', " to "))
-        } else {
-            format!("at {}", it.pose)
-        };
-        Some((bounds_words(&of(it)?, it.unit), format!("{at}{about}")))
+/// Figures of one name and unit, each with its index in the JSON.
+pub(crate) struct FigureGroup<'a> {
+    pub(crate) name: FigureName,
+    pub(crate) own: Vec<(usize, &'a FigureEntry)>,
+}
+
+/// A value of a figure, if it has one.
+pub(crate) type FigureValue = fn(&FigureEntry) -> Option<BoundsEntry>;
+
+/// Further values of a figure: words, short words and key.
+pub(crate) const FURTHER: [(&str, &str, &str, FigureValue); 3] = [
+    ("without the instrument's noise", "without noise", "without_noise", |it| it.without_noise),
+    ("before", "before", "before", |it| it.before),
+    ("predicted for corrected commands", "predicted", "corrected", |it| it.corrected),
+];
+
+/// The figures of a test by name and unit.
+pub(crate) fn groups(test: &TestResult) -> Vec<FigureGroup<'_>> {
+    let all = FigureName::ALL.into_iter().flat_map(|it| [(it.0, it.1, "mm"), (it.0, it.1, "deg")]);
+    let group = |(name, symbol, unit): (FigureName, &str, &str)| {
+        let is_own =
+            |it: &&FigureEntry| it.unit == unit && it.figure.trim_end_matches(['a', 'b', 'c']) == symbol;
+        let own = test.figures.iter().enumerate().filter(|(_, it)| is_own(it)).collect();
+        FigureGroup { name, own }
     };
-    let which = if own.len() > 1 { "largest " } else { "" };
-    let mut all: Vec<String> = largest(|it| Some(it.measured))
-        .into_iter()
-        .map(|(it, at)| format!("{it}, {which}{at}: {words}"))
-        .collect();
-    all.extend(
-        largest(|it| it.without_noise).map(|(it, at)| format!("{it} without the instrument's noise, {at}")),
-    );
-    all.extend(
-        largest(|it| it.corrected).map(|(it, at)| format!("{it} predicted for corrected commands, {at}")),
-    );
-    all
+    all.map(group).filter(|it| !it.own.is_empty()).collect()
+}
+
+impl<'a> FigureGroup<'a> {
+    /// The largest of a value: index, figure and value.
+    pub(crate) fn largest(&self, value: FigureValue) -> Option<(usize, &'a FigureEntry, BoundsEntry)> {
+        let all = self.own.iter().filter_map(|&(at, it)| Some((at, it, value(it)?)));
+        all.max_by(|a, b| a.2.found.abs().total_cmp(&b.2.found.abs()))
+    }
+
+    /// Its place in words: `at P3`, `at P3 about c`, `from P2 to P4`.
+    pub(crate) fn place(&self, of: &FigureEntry) -> String {
+        if let Some((from, to)) = of.pose.split_once('-') {
+            return format!("from {from} to {to}");
+        }
+        match of.figure.strip_prefix(self.name.symbol()) {
+            None | Some("") => format!("at {}", of.pose),
+            Some(axis) => format!("at {} about {axis}", of.pose),
+        }
+    }
+
+    /// The largest with its interval, and further values, a line each.
+    fn lines(&self) -> Vec<String> {
+        let which = if self.own.len() > 1 { "largest " } else { "" };
+        let first = self.largest(|it| Some(it.measured)).map(|(_, it, value)| {
+            let (at, words, clause) = (self.place(it), self.name.words(), self.name.clause());
+            format!("{}, {which}{at}: {words} ({clause})", bounds_words(&value, it.unit))
+        });
+        let further = FURTHER.iter().filter_map(|(words, _, _, value)| {
+            let (_, it, found) = self.largest(*value)?;
+            Some(format!("{} {words}, {}", bounds_words(&found, it.unit), self.place(it)))
+        });
+        first.into_iter().chain(further).collect()
+    }
 }
 
 /// AP and RP of positions at each pose.
@@ -200,10 +240,12 @@ fn poses(out: &mut String, test: &TestResult) {
             [accuracy.measured, repeatability.measured].map(|it| [it.found, it.from, it.to].map(number));
         row(out, &format!("  {}", accuracy.pose), WIDTHS, cells.concat());
     }
-    let corrected: Vec<_> = of("AP").filter_map(|it| Some((&it.pose, it.corrected?))).collect();
-    if !corrected.is_empty() {
-        row(out, "corrected, mm", WIDTHS, ["AP", "from", "to"]);
-        for (pose, it) in corrected {
+    for (words, value) in [("before, mm", FURTHER[1].3), ("corrected, mm", FURTHER[2].3)] {
+        let all: Vec<_> = of("AP").filter_map(|it| Some((&it.pose, value(it)?))).collect();
+        if !all.is_empty() {
+            row(out, words, WIDTHS, ["AP", "from", "to"]);
+        }
+        for (pose, it) in all {
             row(out, &format!("  {pose}"), WIDTHS, [it.found, it.from, it.to].map(number));
         }
     }

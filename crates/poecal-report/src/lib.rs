@@ -49,7 +49,7 @@ pub use judgement::{describe_judgement, judgement};
 pub use offsets::Offsets;
 pub use page::{
     CertificateExtras, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page,
-    validation_page, visit_page,
+    test_certificate_page, test_page, validation_page, visit_page,
 };
 pub use plan::PlanReport;
 pub use row_report::RowReport;

@@ -62,6 +62,10 @@ record! {
     tool = "Tool",
     /// The load that the robot carried, with its unit.
     payload = "Payload",
+    /// The speed of a test, like `100 %` or `500 mm/s`.
+    speed = "Speed",
+    /// Warm-up of the robot before a test.
+    warm_up = "Warm-up",
     /// Person who measured.
     operator = "Operator",
     /// Day of the measurements, `YYYY-MM-DD`.

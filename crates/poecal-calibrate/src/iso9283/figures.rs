@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::cluster::PoseCluster;
 use super::faults;
 use super::figure::{FigureBounds, FigureName, TestFigure};
 use super::frame::{RegisteredBarycentres, register};
@@ -12,11 +13,16 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_fit::start::mean_rotation;
 use poecal_numerics::error::{ErrorKind, Result};
 
+/// Commands (metres) within this are of one test.
+const SAME_M: f64 = 1e-3;
+
 /// A test: its figures, and the frame in which accuracy is stated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Iso9283 {
-    /// Names of the poses.
-    pub poses: Vec<String>,
+    /// Measured positions of each pose.
+    pub clusters: Vec<PoseCluster>,
+    /// Standard deviations of the instrument's noise, each component, if every row states it: metres, radians.
+    pub noise: [Option<f64>; 2],
     /// Fewest cycles of a pose.
     pub cycles: usize,
     /// Rows of the figures AP to RD.
@@ -32,6 +38,31 @@ pub struct Iso9283 {
 }
 
 impl Iso9283 {
+    /// Refuses an earlier test of other commands.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`], with the pose.
+    pub fn refuse_other_commands(&self, earlier: &Iso9283) -> Result<()> {
+        for own in &self.clusters {
+            let Some(other) = earlier.clusters.iter().find(|it| it.pose == own.pose) else {
+                return ErrorKind::Measurement.refuse(format!(
+                    "found no pose {} in the rows of --reference, expected the poses of this test: measure the same list before and after",
+                    own.pose
+                ));
+            };
+            let apart_m = (own.commanded_m - other.commanded_m).norm();
+            if apart_m > SAME_M {
+                return ErrorKind::Measurement.refuse(format!(
+                    "found pose {} commanded {:.3} mm from its command in the rows of --reference, expected one command: fill in the same list before and \
+                     after, with the commands before their correction",
+                    own.pose,
+                    1e3 * apart_m
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// Figures of a name, of lengths or of angles.
     pub fn of_name(&self, name: FigureName, is_of_angles: bool) -> impl Iterator<Item = &TestFigure> {
         self.figures.iter().filter(move |it| it.name == name && it.axis.is_some() == is_of_angles)
@@ -80,8 +111,15 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
     figures.extend(distances(base, &commanded, calibrated.as_deref()));
     figures.extend(variations(&cells));
     figures.extend(drifts(&cells, &found));
+    let cluster = |(k, cell)| PoseCluster::new(cell, k, &found, corrected.as_ref());
+    let clusters = base.iter().enumerate().map(cluster).collect();
+    let noise = |quantity: usize| {
+        let variances = base.iter().map(|it| it.noise_variance(quantity));
+        Some((variances.sum::<Option<f64>>()? / base.len() as f64).sqrt())
+    };
     Ok(Iso9283 {
-        poses: base.iter().map(|it| it.pose.clone()).collect(),
+        clusters,
+        noise: [0, 1].map(noise),
         cycles: base.iter().map(PoseCell::count).min().unwrap_or(0),
         rows: base.iter().map(PoseCell::count).sum(),
         base_from_device: found.base_from_device,
@@ -268,17 +306,9 @@ fn largest_bounds(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBo
 
 /// dAP and dRP: the largest change from the first series.
 fn drifts(cells: &PoseCells<'_>, found: &RegisteredBarycentres) -> Vec<TestFigure> {
-    let accuracy = |cell: &PoseCell<'_>, wanted: &Vector3<f64>| {
-        let (mean, spread) = cell.barycentre();
-        let turn = found.base_from_device.rotation;
-        let count = cell.count() as f64;
-        let covariance = turn * spread * turn.transpose() / count;
-        let error = found.base_from_device.act(&mean) - wanted;
-        intervals::length(&error, &[VariancePart { covariance, freedom: count - 1.0 }])
-    };
     let mut figures = Vec::new();
     for name in [FigureName::Dap, FigureName::Drp] {
-        for base in &cells.base {
+        for (at, base) in cells.base.iter().enumerate() {
             let own = base.labels;
             let is_later = |it: &&PoseCell<'_>| {
                 let other = it.labels;
@@ -286,18 +316,53 @@ fn drifts(cells: &PoseCells<'_>, found: &RegisteredBarycentres) -> Vec<TestFigur
                     && (own.arm == other.arm && own.approach == other.approach)
                     && own.series != other.series
             };
-            let wanted = base.commanded_pose().translation;
-            let of = |cell: &PoseCell<'_>| {
+            let repeatability = |cell: &PoseCell<'_>| position_repeatability(cell).measured;
+            let change = |cell: &PoseCell<'_>| {
                 if name == FigureName::Dap {
-                    accuracy(cell, &wanted)
+                    change_of_accuracy(found, at, cell, &base.commanded_pose().translation)
                 } else {
-                    position_repeatability(cell).measured
+                    intervals::difference(&repeatability(cell), &repeatability(base))
                 }
             };
-            let first = of(base);
-            let later = cells.others.iter().filter(is_later).map(|it| intervals::difference(&of(it), &first));
+            let later = cells.others.iter().filter(is_later).map(change);
             figures.extend(largest_bounds(later).map(|it| figure(name, base, it)));
         }
     }
     figures
+}
+
+/// Change of AP at a pose from the first series to a later one, in one frame: `|r'| - |r|`, where the frame moves both.
+fn change_of_accuracy(
+    found: &RegisteredBarycentres,
+    at: usize,
+    later: &PoseCell<'_>,
+    wanted: &Vector3<f64>,
+) -> FigureBounds {
+    let (mean, spread) = later.barycentre();
+    let (turn, count) = (found.base_from_device.rotation, later.count() as f64);
+    let own = VariancePart { covariance: turn * spread * turn.transpose() / count, freedom: count - 1.0 };
+    let (error, before) = (found.base_from_device.act(&mean) - wanted, found.errors[at]);
+    let mut parts = vec![own];
+    if let Some(by) = &found.by_frame {
+        parts.extend(by[at].iter().zip(&found.own).map(|(by, base)| VariancePart {
+            covariance: by * base.covariance * by.transpose(),
+            freedom: base.freedom,
+        }));
+    }
+    let lengths = [(&error, parts.as_slice()), (&before, found.parts[at].as_slice())];
+    let bounds = lengths.map(|(error, parts)| intervals::length(error, parts));
+    if bounds.iter().any(|it| it.from <= 0.0) {
+        return intervals::difference(&bounds[0], &bounds[1]);
+    }
+    let [now, then] = [error.normalize(), before.normalize()];
+    let variance = |direction: Vector3<f64>, of: &VariancePart| {
+        ((direction.transpose() * of.covariance * direction)[0], of.freedom)
+    };
+    let by_base = found.own.iter().enumerate().map(|(k, base)| {
+        let by = found.by_frame.as_ref().map_or_else(Matrix3::zeros, |by| by[at][k]);
+        let own = if k == at { then } else { Vector3::zeros() };
+        variance(by.transpose() * (now - then) - own, base)
+    });
+    let variances: Vec<(f64, f64)> = std::iter::once(variance(now, &own)).chain(by_base).collect();
+    intervals::difference_of_lengths(lengths, &variances)
 }

@@ -17,6 +17,10 @@ pub(super) struct RegisteredBarycentres {
     pub(super) base_from_device: Pose,
     /// Barycentre less command of each pose, metres.
     pub(super) errors: Vec<Vector3<f64>>,
+    /// Covariance of each barycentre, with its degrees of freedom.
+    pub(super) own: Vec<VariancePart>,
+    /// Effect of each barycentre on the fitted frame at each pose; none of a stated frame.
+    pub(super) by_frame: Option<Vec<Vec<Matrix3<f64>>>>,
     /// Part of each cell's scatter in the covariance of each error.
     pub(super) parts: Vec<Vec<VariancePart>>,
 }
@@ -37,24 +41,33 @@ pub(super) fn register(
     let base_from_device = stated.unwrap_or_else(|| rigid_motion(&means, wanted));
     let places: Vec<Vector3<f64>> = means.iter().map(|it| base_from_device.act(it)).collect();
     let turn = base_from_device.rotation;
-    let own = |k: usize| turn * spreads[k] * turn.transpose() / cells[k].count() as f64;
-    let freedom = |k: usize| cells[k].count() as f64 - 1.0;
-    let through = match stated {
+    let own: Vec<VariancePart> = spreads
+        .iter()
+        .zip(cells)
+        .map(|(spread, cell)| {
+            let count = cell.count() as f64;
+            VariancePart { covariance: turn * spread * turn.transpose() / count, freedom: count - 1.0 }
+        })
+        .collect();
+    let all = || 0..cells.len();
+    let by_frame = match stated {
         Some(_) => None,
-        None => Some(LinearFrameFit::new(&places)?),
+        None => {
+            let frame = FrameFit::new(&places)?;
+            Some(all().map(|i| all().map(|k| frame.effect(i, k)).collect()).collect::<Vec<Vec<_>>>())
+        }
     };
-    let parts = (0..cells.len()).map(|i| match &through {
-        None => vec![VariancePart { covariance: own(i), freedom: freedom(i) }],
-        Some(through) => (0..cells.len())
-            .map(|k| {
-                let left = through.residual_effect(i, k);
-                VariancePart { covariance: left * own(k) * left.transpose(), freedom: freedom(k) }
-            })
-            .collect(),
+    let part = |i: usize, k: usize, by: &Matrix3<f64>| {
+        let left = if i == k { Matrix3::identity() + by } else { *by };
+        VariancePart { covariance: left * own[k].covariance * left.transpose(), freedom: own[k].freedom }
+    };
+    let parts = all().map(|i| match &by_frame {
+        None => vec![own[i]],
+        Some(by) => by[i].iter().enumerate().map(|(k, by)| part(i, k, by)).collect(),
     });
     let parts = parts.collect();
     let errors = places.iter().zip(wanted).map(|(place, wanted)| place - wanted).collect();
-    Ok(RegisteredBarycentres { base_from_device, errors, parts })
+    Ok(RegisteredBarycentres { base_from_device, errors, own, by_frame, parts })
 }
 
 fn refuse_undetermined(means: &[Vector3<f64>]) -> Result<()> {
@@ -68,13 +81,13 @@ fn refuse_undetermined(means: &[Vector3<f64>]) -> Result<()> {
     ))
 }
 
-/// The fit of a frame to points, linearised: which share of each point's error is left.
-struct LinearFrameFit {
+/// The fit of a frame to points, linearised.
+struct FrameFit {
     rows: Vec<Matrix3x6<f64>>,
     inverse: Matrix6<f64>,
 }
 
-impl LinearFrameFit {
+impl FrameFit {
     fn new(places: &[Vector3<f64>]) -> Result<Self> {
         let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
         let row = |place: &Vector3<f64>| {
@@ -90,12 +103,11 @@ impl LinearFrameFit {
                 "found poses on a line, expected others beside it: they do not determine the device frame",
             );
         };
-        Ok(LinearFrameFit { rows, inverse })
+        Ok(FrameFit { rows, inverse })
     }
 
-    /// Effect of point `k` on the error that is left of point `i`.
-    fn residual_effect(&self, i: usize, k: usize) -> Matrix3<f64> {
-        let own = if i == k { Matrix3::identity() } else { Matrix3::zeros() };
-        own - self.rows[i] * self.inverse * self.rows[k].transpose()
+    /// Effect of point `k` on the frame at point `i`.
+    fn effect(&self, i: usize, k: usize) -> Matrix3<f64> {
+        -self.rows[i] * self.inverse * self.rows[k].transpose()
     }
 }

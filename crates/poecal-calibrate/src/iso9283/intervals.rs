@@ -80,10 +80,31 @@ pub(super) fn length(error: &Vector3<f64>, parts: &[VariancePart]) -> FigureBoun
     FigureBounds { found, from: 0.0, to: (middle + student(0.10, all) * widest.sqrt()).max(found) }
 }
 
-/// Interval of the size of a difference of two figures, by their own intervals.
+/// Interval of the size of a difference, by that of the difference: where this contains zero, from zero to its farther end.
+fn size(found: f64, [lower, upper]: [f64; 2]) -> FigureBounds {
+    let (from, to) = if lower > 0.0 { (lower, upper) } else { ((-upper).max(0.0), upper.max(-lower)) };
+    FigureBounds { found: found.abs(), from, to }
+}
+
+/// Interval of the size of a difference of two independent figures, by their own intervals (zou2008).
 pub(super) fn difference(first: &FigureBounds, second: &FigureBounds) -> FigureBounds {
-    let found = (first.found - second.found).abs();
-    let half = |it: &FigureBounds| 0.5 * (it.to - it.from);
-    let half = half(first).hypot(half(second));
-    FigureBounds { found, from: (found - half).max(0.0), to: found + half }
+    let found = first.found - second.found;
+    let below = (first.found - first.from).hypot(second.to - second.found);
+    let above = (first.to - first.found).hypot(second.found - second.from);
+    size(found, [found - below, found + above])
+}
+
+/// Interval of the size of a difference of two lengths that are shown to differ from zero: each is too long by its scatter across, and a part of the
+/// scatter moves both.
+pub(super) fn difference_of_lengths(
+    [first, second]: [(&Vector3<f64>, &[VariancePart]); 2],
+    variances: &[(f64, f64)],
+) -> FigureBounds {
+    let middle = |(error, parts): (&Vector3<f64>, &[VariancePart])| {
+        let total: Matrix3<f64> = parts.iter().map(|it| it.covariance).sum();
+        let along = (error.transpose() * total * error)[0] / error.norm_squared();
+        (error.norm_squared() - total.trace() + along).max(0.0).sqrt()
+    };
+    let bounds = mean(middle(first) - middle(second), variances);
+    size(first.0.norm() - second.0.norm(), [bounds.from, bounds.to])
 }

@@ -351,3 +351,148 @@ fn limits_are_decided_by_the_worst_pose() {
     assert!(missing.contains("expected rows that show it: a column `arm`"), "{missing}");
     assert!("XP:1mm".parse::<FigureLimit>().is_err() && "AP:1s".parse::<FigureLimit>().is_err());
 }
+
+/// A robot whose positions are moved, the same for all poses or not.
+struct Varied {
+    known: Known,
+    /// Shifts of the mean positions, metres.
+    shifts: Vec<Vector3<f64>>,
+    /// Factor of the scatter.
+    wider: f64,
+}
+
+impl Varied {
+    fn new(known: &Known, size_m: f64, wider: f64, random: &mut ChaCha8Rng) -> Self {
+        let shifts: Vec<_> = (0..5).map(|_| size_m * normal_vector(random)).collect();
+        let errors = known.errors.iter().zip(&shifts).map(|(a, b)| a + b).collect();
+        let (turns, scatter) = (known.turns.clone(), wider * known.scatter);
+        Varied { known: Known { errors, turns, scatter, ..*known }, shifts, wider }
+    }
+
+    fn rows(
+        &self,
+        cycles: usize,
+        label: fn(&mut TestLabels) -> &mut String,
+        random: &mut ChaCha8Rng,
+    ) -> Vec<TestRow> {
+        let mut rows = self.known.rows(cycles, random);
+        rows.iter_mut().for_each(|row| *label(&mut row.labels) = format!("{:.3}", self.wider));
+        rows
+    }
+}
+
+/// Variation of two and three approaches, exchange of two and three arms, and drift to a second series, in stated and fitted frames: shifts from 1 µm to
+/// 0.3 mm, scatter up to three times as large.
+#[test]
+fn intervals_of_variations_hold_as_often_as_they_say() {
+    let trials = trials(1000);
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let names = ["vAP", "E", "dAP stated", "dAP fitted", "dRP"];
+    let mut shares: Vec<[Share; 2]> = names.iter().map(|_| Default::default()).collect();
+    for trial in trials.seeds() {
+        let size = |random: &mut ChaCha8Rng, least: f64| least * 300.0f64.powf(uniform_number(random));
+        let accuracy_m = 1e-5 * 100.0f64.powf(uniform_number(&mut random));
+        let known = Known::new(&mut random, accuracy_m);
+        let cycles = 10 + (trial % 41) as usize;
+        let mut rows = known.rows(cycles, &mut random);
+        let moved =
+            |size_m: f64, wider: f64, random: &mut ChaCha8Rng| Varied::new(&known, size_m, wider, random);
+        let count = 1 + (trial / 2 % 2) as usize;
+        let mut further = |label: fn(&mut TestLabels) -> &mut String, random: &mut ChaCha8Rng| {
+            let all: Vec<Varied> = (0..count)
+                .map(|k| {
+                    let size_m = size(random, 1e-6);
+                    moved(size_m, 1.0 + 0.001 * k as f64, random)
+                })
+                .collect();
+            rows.extend(all.iter().flat_map(|it| it.rows(cycles, label, random)));
+            all
+        };
+        let approaches = further(|it| &mut it.approach, &mut random);
+        let arms = further(|it| &mut it.arm, &mut random);
+        let size_m = size(&mut random, 1e-6);
+        let wider = 3.0f64.powf(2.0 * uniform_number(&mut random) - 1.0);
+        let later = Varied::new(&known, size_m, wider, &mut random);
+        rows.extend(later.rows(cycles, |it| &mut it.series, &mut random));
+        let is_fitted = trial % 2 == 0;
+        let stated = known.device_from_base.inverse();
+        let found = iso9283(&rows, (!is_fitted).then_some(stated)).unwrap();
+        let mut add = |at: usize, figure: &TestFigure, truth: f64| {
+            let it = figure.measured;
+            shares[at][usize::from(it.from == 0.0)].add(it.from, it.to, truth);
+        };
+        for (at, (name, others)) in
+            [(FigureName::Vap, &approaches), (FigureName::E, &arms)].into_iter().enumerate()
+        {
+            for (k, figure) in figures(&found, name, false).into_iter().enumerate() {
+                let mut all = vec![Vector3::zeros()];
+                all.extend(others.iter().map(|it| it.shifts[k]));
+                let pairs = all.iter().flat_map(|a| all.iter().map(move |b| (a - b).norm()));
+                add(at, figure, pairs.fold(0.0, f64::max));
+            }
+        }
+        let commands = commands();
+        let reached = |of: &Known| -> Vec<Vector3<f64>> {
+            commands.iter().zip(&of.errors).map(|(a, b)| a + b).collect()
+        };
+        let frame = if is_fitted { rigid_motion(&reached(&known), &commands) } else { Pose::identity() };
+        let accuracy = |of: &Known, k: usize| (frame.act(&reached(of)[k]) - commands[k]).norm();
+        for (k, figure) in figures(&found, FigureName::Dap, false).into_iter().enumerate() {
+            add(2 + usize::from(is_fitted), figure, (accuracy(&later.known, k) - accuracy(&known, k)).abs());
+        }
+        let truth = later.known.repeatability(true, &mut random) - known.repeatability(true, &mut random);
+        for figure in figures(&found, FigureName::Drp, false) {
+            add(4, figure, truth.abs());
+        }
+    }
+    for (name, [shown, below]) in names.iter().zip(&shares) {
+        let all = shown.all + below.all;
+        let share = (shown.inside + below.inside) as f64 / all as f64;
+        println!(
+            "{name}: {share:.3} of {all}, shown {:.3} of {}, one-sided {:.3} of {}",
+            shown.share(),
+            shown.all,
+            below.share(),
+            below.all
+        );
+        // Five poses of a trial share frame and cycles, so that they count for fewer.
+        let more = trials.more_of_a_share(0.05);
+        assert!((0.93 - more..=0.97 + more).contains(&share), "{name}: {share:.4}");
+        assert!(below.share() > 0.93 - more, "{name}, one-sided: {:.4}", below.share());
+        // Cases are counted here for their own result: small ones only if they came out large.
+        assert!(shown.share() > 0.90 - more, "{name}, shown: {:.4}", shown.share());
+    }
+}
+
+/// True if a closed line goes around a point.
+fn is_inside(rim: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let crosses = |[a, b]: [[f64; 2]; 2]| {
+        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    };
+    rim.windows(2).filter(|it| crosses([it[0], it[1]])).count() % 2 == 1
+}
+
+/// The ellipse of a pose contains the position of one more cycle in 95 of 100 cases.
+#[test]
+fn ellipses_contain_the_next_cycle() {
+    let trials = trials(1000);
+    let mut random = ChaCha8Rng::seed_from_u64(8);
+    let mut inside = Share::default();
+    for trial in trials.seeds() {
+        let known = Known { device_from_base: Pose::identity(), ..Known::new(&mut random, 3e-4) };
+        let rows = known.rows(11 + (trial % 41) as usize, &mut random);
+        let (next, rows) = rows.split_last_chunk::<5>().map(|(rows, next)| (next, rows)).unwrap();
+        let found = iso9283(rows, Some(Pose::identity())).unwrap();
+        for (cluster, row) in found.clusters.iter().zip(next) {
+            let at = row.position_m - cluster.commanded_m;
+            for axes in [[0, 2], [0, 1]] {
+                let is_in = is_inside(&cluster.ellipse_m(axes), axes.map(|axis| at[axis]));
+                inside.add(if is_in { 0.0 } else { 1.0 }, 1.0, 0.5);
+            }
+        }
+    }
+    println!("inside: {:.3} of {}", inside.share(), inside.all);
+    // Two planes of a pose share a coordinate.
+    let more = trials.more_of_a_share(0.05);
+    assert!((0.93 - more..=0.97 + more).contains(&inside.share()), "{:.4}", inside.share());
+}

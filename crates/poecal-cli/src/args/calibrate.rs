@@ -129,7 +129,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,
     /// Entries of the report on the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
-    /// instrument_calibrated, tool, payload, operator, date, place, temperature, valid_until or note
+    /// instrument_calibrated, tool, payload, speed, warm_up, operator, date, place, temperature, valid_until or note
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
     /// Print everything: errors of fitted rows and of the nominal model, noise, solver, cross-validation, every joint

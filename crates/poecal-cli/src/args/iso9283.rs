@@ -22,6 +22,10 @@ pub(crate) struct Iso9283Args {
     /// expect of corrected commands
     #[arg(long, value_name = "MODEL")]
     pub(crate) robot: Option<PathBuf>,
+    /// Rows of the same test before the calibration, whose figures stand beside; with --robot calibration.json also what these rows predict of corrected
+    /// commands (repeatable)
+    #[arg(long, value_name = "BEFORE.csv")]
+    pub(crate) reference: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     #[command(flatten)]
@@ -39,9 +43,15 @@ pub(crate) struct Iso9283Args {
     /// 95 % confidence
     #[arg(long, value_name = "FIGURE:LIMIT", value_delimiter = ',', help_heading = JUDGED)]
     pub(crate) accept: Vec<FigureLimit>,
-    /// Entries of the report on the test, like payload="10 kg" or instrument=AT960 (repeatable): the keys of `poecal calibrate`
+    /// Entries of the report on the test, like payload="10 kg", warm_up="1 h" or instrument=AT960 (repeatable): the keys of `poecal calibrate`
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, help_heading = RESULTS)]
     pub(crate) record: Vec<(String, String)>,
+    /// Write a page (HTML) with all figures, the cube and the scatter of each pose; its print begins with a certificate
+    #[arg(long, value_name = "FILE", help_heading = RESULTS)]
+    pub(crate) report: Option<PathBuf>,
+    /// Write the certificate alone as the page, one page of paper
+    #[arg(long, requires = "report", help_heading = RESULTS)]
+    pub(crate) certificate: bool,
     /// Print JSON instead of the table
     #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
@@ -54,6 +64,7 @@ impl Iso9283Args {
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         self.measurements
             .iter()
+            .chain(&self.reference)
             .chain(&self.robot)
             .map(PathBuf::as_path)
             .chain(self.meaning.files())

@@ -33,7 +33,7 @@ pub(crate) struct PlanArgs {
     pub(crate) cameras: CameraArgs,
     /// Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose repeats
     /// show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones. iso9283 lists P1 to P5 of the
-    /// largest cube within reach and limits, or of that of --workspace, in --count cycles, as a table to fill in
+    /// largest cube within reach and limits, or of the cube or plane (one side of zero) of --workspace, in --count cycles, as a table to fill in
     #[arg(long, value_name = "PURPOSE", value_parser = ["drift", "iso9283"])]
     pub(crate) purpose: Option<String>,
     #[command(flatten)]

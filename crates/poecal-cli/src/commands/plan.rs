@@ -10,8 +10,7 @@ use poecal_model::robot::Tolerance;
 use poecal_model::simulate::SessionKind;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_plan::plan::{
-    CYCLE, Conditions, DeviceView, PlanOptions, PlannedFit, PlannedRow, RowPurpose, plan as planned,
-    test_cube, workspace_in,
+    Conditions, DeviceView, PlanOptions, PlannedFit, plan as planned, test_cube, workspace_in,
 };
 use poecal_report as report;
 use poecal_results::model::Model;
@@ -136,18 +135,14 @@ fn iso9283(
         WorkspaceChoice::Box(corners) => Some(*corners),
         WorkspaceChoice::Tasks(_) => {
             return ErrorKind::Option
-                .refuse("--workspace: found a file, expected a cube with --purpose iso9283, like 800,-200,300:1200,200,700mm");
+                .refuse("--workspace: found a file, expected a cube or a plane with --purpose iso9283, like 800,-200,300:1200,200,700mm");
         }
     };
     let model = read_model(&arguments.model, &arguments.chain.selection(None)?, console)?;
     console.warnings(&Vec::from_iter(model.robot.placeholder_limits()));
     let cube = test_cube(&model.robot, stated, arguments.conditions.floor_height)?;
     let cycles = arguments.count as usize;
-    let order = CYCLE.iter().filter_map(|&at| Some(cube.poses.get(at)?.1.clone()));
-    let part = RowPurpose::Fit;
-    let one: Vec<PlannedRow> =
-        order.map(|readings| PlannedRow { readings, part, returns: false, candidate: None }).collect();
-    let rows: Vec<PlannedRow> = (0..cycles).flat_map(|_| one.clone()).collect();
+    let rows = cube.rows(cycles);
     let as_program =
         arguments.program.as_ref().map(|path| plan_program(path, &model.robot, &rows)).transpose()?;
     if let Some((place, text)) = program.zip(as_program) {

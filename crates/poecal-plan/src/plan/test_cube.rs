@@ -1,9 +1,10 @@
-//! The cube of ISO 9283 (clause 6.8): P1 to P5, with sides along the base, in joint readings.
+//! The cube of ISO 9283 (clause 6.8), or a plane: P1 to P5, with sides along the base, in joint readings.
 
 use nalgebra::{Matrix3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::{PlannedRow, RowPurpose};
 use poecal_arm::Arm;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::robot::Robot;
@@ -38,15 +39,44 @@ const REACHED: f64 = 1e-9;
 /// A whole step of middles and sides, metres.
 const STEP_M: f64 = 0.01;
 
+/// Vertices of a plane and its middle, P1 to P5, along its two axes.
+const IN_PLANE: [[f64; 2]; 5] = [[0.0; 2], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+/// Sides up to this are zero, metres.
+const FLAT_M: f64 = 1e-6;
+
 /// Five poses of a test, with the readings that reach them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestCube {
     /// Middle of the cube in the base, metres.
     pub middle_m: [f64; 3],
-    /// Length of a side, metres.
-    pub side_m: f64,
+    /// Sides along the axes of the base, metres; one of a plane is zero.
+    pub sides_m: [f64; 3],
     /// P1 to P5: the tip in the base, and the readings.
     pub poses: Vec<(Pose, Vec<f64>)>,
+}
+
+impl TestCube {
+    /// Rows of so many cycles in the order of the standard.
+    #[must_use]
+    pub fn rows(&self, cycles: usize) -> Vec<PlannedRow> {
+        let order = CYCLE.iter().filter_map(|&at| Some(self.poses.get(at)?.1.clone()));
+        let part = RowPurpose::Fit;
+        let one: Vec<PlannedRow> =
+            order.map(|readings| PlannedRow { readings, part, returns: false, candidate: None }).collect();
+        (0..cycles).flat_map(|_| one.clone()).collect()
+    }
+}
+
+/// Vertices about the middle whose poses are P1 to P5, metres: in the diagonal plane of a cube, or those of a plane.
+fn vertices(sides_m: [f64; 3]) -> [Vector3<f64>; 5] {
+    let half = 0.5 * Vector3::from(sides_m);
+    match sides_m.iter().position(|side| *side <= FLAT_M) {
+        None => POSES.map(|it| half.component_mul(&Vector3::from(it))),
+        Some(normal) => IN_PLANE.map(|it| {
+            let mut along = it.into_iter();
+            Vector3::from_fn(|k, _| if k == normal { 0.0 } else { half[k] * along.next().unwrap_or(0.0) })
+        }),
+    }
 }
 
 /// An arm that reaches poses within its limits.
@@ -82,19 +112,17 @@ impl ReachingArm<'_> {
         Some((pose, q))
     }
 
-    /// P1 to P5 of a cube, reached from the middle in straight lines; else the first that is not, by its index.
+    /// P1 to P5 of a cube or plane, reached from the middle in straight lines; else the first that is not, by its index.
     fn cube(
         &self,
         middle: &Pose,
-        side_m: f64,
+        sides_m: [f64; 3],
         near: &[f64],
     ) -> std::result::Result<Vec<(Pose, Vec<f64>)>, usize> {
         let first = self.reach(middle, near).ok_or(0usize)?;
-        let pose = |(at, vertex): (usize, &[f64; 3])| {
-            let half = Vector3::from(*vertex) * (0.5 * side_m);
-            self.walk((middle, &first), half, STEPS_TO_POSE).ok_or(at)
-        };
-        POSES.iter().enumerate().map(pose).collect()
+        let pose =
+            |(at, half): (usize, Vector3<f64>)| self.walk((middle, &first), half, STEPS_TO_POSE).ok_or(at);
+        vertices(sides_m).into_iter().enumerate().map(pose).collect()
     }
 
     /// True if all vertices of a cube are reached from its middle, and the base is outside.
@@ -126,7 +154,7 @@ impl ReachingArm<'_> {
 }
 
 /// The largest cube beside the base that is found whose five poses and vertices are reached within limits, in straight lines from its middle and with one
-/// orientation of the tip, from a fixed seed; or a stated one, from one vertex to the opposite one, metres, whose poses are reached so. Nothing else in the
+/// orientation of the tip, from a fixed seed; or a stated one, from one vertex to the opposite one, metres, whose poses are reached so; a box with one side of zero is a plane. Nothing else in the
 /// way is looked at but a floor, above which the largest cube stays, metres.
 ///
 /// # Errors
@@ -143,13 +171,13 @@ pub fn test_cube(robot: &Robot, stated: Option<[[f64; 3]; 2]>, floor_m: Option<f
         Some(corners) => stated_cube(&it, corners, &starts, &turns)?,
         None => find_largest_cube(&it, &starts, &turns, &mut random)?,
     };
-    let (middle, side_m, poses) = found;
+    let (middle, sides_m, poses) = found;
     let poses = poses.into_iter().map(|(pose, q)| (pose, it.all(&q))).collect();
-    Ok(TestCube { middle_m: middle.translation.into(), side_m, poses })
+    Ok(TestCube { middle_m: middle.translation.into(), sides_m, poses })
 }
 
-/// A cube: its middle, its side, its poses.
-type CubePlacement = (Pose, f64, Vec<(Pose, Vec<f64>)>);
+/// A cube or plane: its middle, its sides, its poses.
+type CubePlacement = (Pose, [f64; 3], Vec<(Pose, Vec<f64>)>);
 
 fn round_to_step(value: f64) -> f64 {
     (value / STEP_M).round() * STEP_M
@@ -163,15 +191,15 @@ fn find_largest_cube(
 ) -> Result<CubePlacement> {
     let mut best: Option<(CubePlacement, Vec<f64>)> = None;
     let grow = |middle: Pose, near: &[f64], best: &mut Option<(CubePlacement, Vec<f64>)>| {
-        let mut side_m = best.as_ref().map_or(FIRST * it.arm.reach_m(), |(found, _)| found.1 + STEP_M);
+        let mut side_m = best.as_ref().map_or(FIRST * it.arm.reach_m(), |(found, _)| found.1[0] + STEP_M);
         loop {
             side_m = round_to_step(side_m).max(STEP_M);
-            let Ok(poses) = it.cube(&middle, side_m, near) else { return };
+            let Ok(poses) = it.cube(&middle, [side_m; 3], near) else { return };
             let first = poses.first().map(|it| it.1.clone()).unwrap_or_default();
             if !it.is_whole(&middle, side_m, &first) {
                 return;
             }
-            *best = Some(((middle, side_m, poses), first));
+            *best = Some(((middle, [side_m; 3], poses), first));
             side_m = (side_m * GROWTH).max(side_m + STEP_M);
         }
     };
@@ -182,7 +210,7 @@ fn find_largest_cube(
         }
     }
     for _ in 0..TRIES {
-        let Some(((middle, side_m, _), near)) = best.clone() else { break };
+        let Some(((middle, [side_m, ..], _), near)) = best.clone() else { break };
         let step = normal_vector(random) * (0.3 * side_m * uniform_number(random));
         grow(Pose::new(middle.rotation, (middle.translation + step).map(round_to_step)), &near, &mut best);
     }
@@ -200,28 +228,29 @@ fn stated_cube(
     starts: &[Vec<f64>],
     turns: &[Matrix3<f64>],
 ) -> Result<CubePlacement> {
-    let sides: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]).abs());
-    let side_m = sides[0];
-    if sides.iter().any(|side| (side - side_m).abs() > 1e-6) || side_m <= 0.0 {
-        let [x, y, z] = sides.map(|side| 1e3 * side);
+    let sides_m: [f64; 3] = std::array::from_fn(|k| (to[k] - from[k]).abs());
+    let is_cube = sides_m.iter().all(|side| (side - sides_m[0]).abs() <= FLAT_M && *side > FLAT_M);
+    let is_plane = sides_m.iter().filter(|side| **side <= FLAT_M).count() == 1;
+    if !is_cube && !is_plane {
+        let [x, y, z] = sides_m.map(|side| 1e3 * side);
         return ErrorKind::Option.refuse(format!(
-            "found a box of {x:.1}, {y:.1}, {z:.1} mm, expected a cube: ISO 9283 has equal sides (clause 6.8.2)"
+            "found a box of {x:.1}, {y:.1}, {z:.1} mm, expected a cube, whose sides are equal, or a plane, of which one is zero: ISO 9283 has no other box (clause 6.8.2)"
         ));
     }
     let middle = Vector3::from_fn(|k, _| 0.5 * (from[k] + to[k]));
     let mut missed = 0;
     for turn in turns {
         for start in starts {
-            match it.cube(&Pose::new(*turn, middle), side_m, &it.own_readings(start)) {
-                Ok(poses) => return Ok((Pose::new(*turn, middle), side_m, poses)),
+            match it.cube(&Pose::new(*turn, middle), sides_m, &it.own_readings(start)) {
+                Ok(poses) => return Ok((Pose::new(*turn, middle), sides_m, poses)),
                 Err(at) => missed = missed.max(at),
             }
         }
     }
-    let own = middle + Vector3::from(POSES[missed]) * (0.5 * INSIDE * side_m);
+    let own = middle + INSIDE * vertices(sides_m)[missed];
     let [x, y, z]: [f64; 3] = (1e3 * own).into();
     ErrorKind::Problem.refuse(format!(
-        "found P{} at {x:.1}, {y:.1}, {z:.1} mm out of reach or beyond limits, expected all five poses within them: state a smaller or nearer cube with --workspace",
+        "found P{} at {x:.1}, {y:.1}, {z:.1} mm out of reach or beyond limits, expected all five poses within them: state a smaller or nearer one with --workspace",
         missed + 1
     ))
 }
@@ -235,17 +264,30 @@ mod tests {
     fn cubes_are_reached_within_limits() {
         let robot = elbow();
         let found = test_cube(&robot, None, Some(0.1)).unwrap();
-        println!("side {} m about {:?}", found.side_m, found.middle_m);
-        assert!(found.side_m > 0.3 && found.middle_m[2] - 0.5 * found.side_m >= 0.1);
+        println!("side {} m about {:?}", found.sides_m[0], found.middle_m);
+        assert!(found.sides_m[0] > 0.3 && found.middle_m[2] - 0.5 * found.sides_m[0] >= 0.1);
         for (pose, readings) in &found.poses {
             let (shift, turn) = robot.forward_kinematics(readings).distance_and_angle(pose);
             assert!(shift < 1e-8 && turn < 1e-8);
         }
         let apart = found.poses[1].0.translation - found.poses[3].0.translation;
-        assert!((apart.norm() - INSIDE * 3f64.sqrt() * found.side_m).abs() < 1e-12);
+        assert!((apart.norm() - INSIDE * 3f64.sqrt() * found.sides_m[0]).abs() < 1e-12);
         let middle = found.middle_m;
         let corners = |half: f64| [middle.map(|it| it - half), middle.map(|it| it + half)];
         assert!(test_cube(&robot, Some(corners(0.1)), None).is_ok());
+        let mut flat = corners(0.1);
+        flat[1][0] += 0.05;
+        assert!(
+            test_cube(&robot, Some(flat), None)
+                .unwrap_err()
+                .to_string()
+                .contains("or a plane, of which one is zero")
+        );
+        (flat[0][2], flat[1][2]) = (middle[2], middle[2]);
+        let plane = test_cube(&robot, Some(flat), None).unwrap();
+        let own = |at: usize| plane.poses[at].0.translation - plane.poses[0].0.translation;
+        assert!((own(1) - Vector3::new(0.1, 0.08, 0.0)).norm() < 1e-12, "{:?}", own(1));
+        assert!((own(1) + own(3)).norm() < 1e-12 && (own(2) + own(4)).norm() < 1e-12);
         let far = test_cube(&robot, Some(corners(2.0)), None).unwrap_err().to_string();
         assert!(far.contains("found P2 at") && far.contains("out of reach"), "{far}");
     }

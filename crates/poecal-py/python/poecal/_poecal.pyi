@@ -25,6 +25,7 @@ __all__ = [
     "SetAccuracy",
     "Simulation",
     "Statistic",
+    "TestPlan",
     "Verdict",
     "Watch",
     "_calibration",
@@ -1621,6 +1622,51 @@ class Calibration:
     __hash__: None  # type: ignore[assignment]
 
 @final
+class TestPlan:
+    """The poses of a test of ISO 9283. `str` is the program's table, `to_dict` what the program prints with `--json`."""
+    @property
+    def joints(self) -> NDArray[np.float64]:
+        """The configurations of all cycles in their order, P5 to P1, shape (5 * cycles, n), radians and metres, in the order of `robot.reading_names`."""
+    @property
+    def cycles(self) -> int:
+        """Number of cycles."""
+    def to_json(self) -> str:
+        """The poses as JSON.
+
+        Returns
+        -------
+        str
+            The text.
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """The poses as dicts and lists: what the program prints with `--json`.
+
+        Returns
+        -------
+        dict
+            "middle_mm" and "sides_mm" of the cube or plane, "cycles", and the "poses" P1 to P5.
+        """
+    def write(self, path: _Path, *, force: bool = False) -> None:
+        """Writes the table that `poecal.iso9283` reads once it has what was measured.
+
+        Parameters
+        ----------
+        path
+            The file (CSV).
+        force
+            Whether to write over a file that exists.
+        """
+    def write_program(self, path: _Path, *, force: bool = False) -> None:
+        """Writes all cycles as a program of slow joint motions with a stop at each pose.
+
+        Parameters
+        ----------
+        path
+            The file: its name ends in .script (Universal Robots), .mod (ABB), .src (KUKA) or .ls (FANUC).
+        force
+            Whether to write over a file that exists.
+        """
+@final
 class Plan:
     """A planned list of configurations. `str` is the program's table, `to_dict` the program's output with `--json`."""
     @property
@@ -2023,6 +2069,10 @@ def iso9283(
     units: str | None = None,
     accept: str | None = None,
     record: Mapping[str, str] | None = None,
+    earlier: _Path | None = None,
+    report: _Path | None = None,
+    certificate: bool = False,
+    force: bool = False,
 ) -> Iso9283:
     """Accuracy and repeatability of a robot after ISO 9283:1998, each figure with its 95 % interval.
 
@@ -2043,6 +2093,14 @@ def iso9283(
         Limits that figures must keep, like "AP:0.5mm,RP:0.05mm".
     record
         What is stated of the test, by the keys of `poecal calibrate --record`.
+    earlier
+        Path of the rows of the same test before the calibration, whose figures stand beside; with a calibration.json also what they predict.
+    report
+        File for a page (HTML) with all figures, the cube and the scatter of each pose; its print begins with a certificate.
+    certificate
+        Whether that page is the certificate alone, one page of A4.
+    force
+        Whether to write over a file that exists.
 
     Returns
     -------
@@ -2440,7 +2498,8 @@ def plan(
     robot
         The robot, or the path of its model; a calibration, or a robot that was read from a calibration.json, plans the next session of it.
     purpose
-        "calibration", or "drift" for visits to a calibration.
+        "calibration", "drift" for visits to a calibration, or "iso9283" for a test of ISO 9283: P1 to P5 of the largest cube, with `count` cycles (default
+        30), `floor_height_mm`, and `workspace_box_mm` for a stated cube, or a plane, of which one side is zero.
     kind
         Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
     count
@@ -2511,7 +2570,7 @@ def plan(
 
     Returns
     -------
-    Plan or VisitPlan
+    Plan, VisitPlan or TestPlan
         The rows in the order of their measurement, with the expected errors; with "drift" the detectable shift of each joint. Only configurations are
         checked, never the path between them.
     """
@@ -2532,7 +2591,16 @@ def plan(
 def plan(
     robot: Robot | Calibration | _Path,
     *,
-    purpose: Literal["calibration", "drift"],
+    purpose: Literal["iso9283"],
+    count: int | None = None,
+    workspace_box_mm: ArrayLike | None = None,
+    floor_height_mm: _Number | None = None,
+) -> TestPlan: ...
+@overload
+def plan(
+    robot: Robot | Calibration | _Path,
+    *,
+    purpose: Literal["calibration", "drift", "iso9283"],
     kind: _Kind = "point",
     count: int | None = None,
     held_out_count: int | None = None,
@@ -2569,7 +2637,7 @@ def plan(
     tool: Literal["same", "refit"] | None = None,
     repeatability_mm: _Number | None = None,
     target: str | None = None,
-) -> Plan | VisitPlan: ...
+) -> Plan | VisitPlan | TestPlan: ...
 def track(
     calibration: Calibration,
     measurements: Measurements,

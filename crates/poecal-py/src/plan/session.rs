@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
+use poecal_calibrate::STANDARD_CYCLES;
 use poecal_cli::words;
 use poecal_plan::plan::{Conditions, DeviceView, PlanOptions, PlannedRow, RowPurpose, plan as planned};
 use poecal_report as report;
@@ -18,6 +19,7 @@ use crate::paths;
 use crate::plan_options::{PriorBeliefs, configurations, corners, place, workspace};
 use crate::plan_result::Plan;
 use crate::robot::Robot;
+use crate::test_plan::TestPlan;
 use crate::visit_plan::VisitOptions;
 use crate::words::{choose_word, from_mm, kind as kind_word, one_of, sigma, size};
 
@@ -64,6 +66,14 @@ pub(super) struct PlanView {
     pub(super) of_target: (Option<f64>, Option<[f64; 3]>),
 }
 
+/// Purpose of a plan.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum PlanPurpose {
+    Calibration,
+    Drift,
+    Iso9283,
+}
+
 /// A session that is to be planned.
 pub(super) struct PlanSession<'a, 'py> {
     pub(super) rows: PlanningRows<'a, 'py>,
@@ -84,23 +94,48 @@ impl PlanSession<'_, '_> {
         robot: &Bound<'py, PyAny>,
         visits: &VisitOptions<'_>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if choose_word("purpose", purpose, &[("calibration", false), ("drift", true)])? {
-            self.refuse_for_visits()?;
-            return visits.plan(py, robot, self.rows.count, self.rows.candidates)?.into_pyobject(py);
+        let known = [
+            ("calibration", PlanPurpose::Calibration),
+            ("drift", PlanPurpose::Drift),
+            ("iso9283", PlanPurpose::Iso9283),
+        ];
+        let purpose = choose_word("purpose", purpose, &known)?;
+        match purpose {
+            PlanPurpose::Drift => {
+                self.refuse_others(purpose)?;
+                visits.plan(py, robot, self.rows.count, self.rows.candidates)?.into_pyobject(py)
+            }
+            PlanPurpose::Iso9283 => {
+                visits.refuse()?;
+                self.refuse_others(purpose)?;
+                self.plan_test(py, planned_robot(robot)?.get())?.into_bound_py_any(py)
+            }
+            PlanPurpose::Calibration => {
+                visits.refuse()?;
+                self.plan(py, planned_robot(robot)?.get())?.into_bound_py_any(py)
+            }
         }
-        visits.refuse()?;
-        self.plan(py, planned_robot(robot)?.get())?.into_bound_py_any(py)
     }
 
-    /// Refuses statements about a calibration if visits are planned. A default is no statement.
-    fn refuse_for_visits(&self) -> PyResult<()> {
+    /// Plans a test of ISO 9283.
+    fn plan_test(self, py: Python<'_>, robot: &Robot) -> PyResult<TestPlan> {
+        let cycles = self.rows.count.unwrap_or(STANDARD_CYCLES);
+        refuse_numbers(cycles, 0, 1)?;
+        let stated = self.aim.workspace_box_mm.map(|it| corners(it, "workspace_box_mm")).transpose()?;
+        let floor_m = self.room.floor_height_mm.map(from_mm);
+        py.detach(|| TestPlan::new(&robot.model, stated, floor_m, cycles))
+    }
+
+    /// Refuses what is stated of a calibration where visits or a test are planned. What a default says is no statement.
+    fn refuse_others(&self, purpose: PlanPurpose) -> PyResult<()> {
         let PlanSession { rows, aim, believe, room, view, stop_s, seed } = self;
         let usual = *believe.tolerance_deg_mm == PriorTolerance::Given((0.5, 5.0));
         let stated = [
             ("kind", aim.kind != "point"),
             ("held_out_count", rows.held_out_count.is_some()),
             ("workspace", aim.workspace.is_some()),
-            ("workspace_box_mm", aim.workspace_box_mm.is_some()),
+            ("workspace_box_mm", aim.workspace_box_mm.is_some() && purpose == PlanPurpose::Drift),
+            ("candidates", rows.candidates.is_some() && purpose == PlanPurpose::Iso9283),
             ("keep_rows", rows.keep_rows.is_some()),
             ("replace_rows", rows.replace_rows.is_some()),
             ("criterion", aim.criterion != "expected"),
@@ -115,7 +150,7 @@ impl PlanSession<'_, '_> {
             ("gravity", believe.gravity.is_some()),
             ("margin_deg_mm", room.margin_deg_mm.is_some()),
             ("keep_out_mm", room.keep_out_mm.is_some()),
-            ("floor_height_mm", room.floor_height_mm.is_some()),
+            ("floor_height_mm", room.floor_height_mm.is_some() && purpose == PlanPurpose::Drift),
             ("separation_deg", room.separation_deg.is_some()),
             ("device_mm", view.device_mm.is_some()),
             ("device_half_angle_deg", view.device_half_angle_deg.is_some()),
@@ -128,7 +163,11 @@ impl PlanSession<'_, '_> {
             ("seed", *seed != 1),
         ];
         if let Some((name, _)) = stated.into_iter().find(|it| it.1) {
-            let message = "found it with purpose=\"drift\", expected only candidates, count, earlier, device, tool and repeatability_mm beside it";
+            let message = if purpose == PlanPurpose::Iso9283 {
+                "found it with purpose=\"iso9283\", expected only count, workspace_box_mm and floor_height_mm beside it"
+            } else {
+                "found it with purpose=\"drift\", expected only candidates, count, earlier, device, tool and repeatability_mm beside it"
+            };
             return Err(argument(name, message));
         }
         Ok(())

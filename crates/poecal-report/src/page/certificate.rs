@@ -25,10 +25,15 @@ pub(crate) fn record_markup(record: &Record) -> Markup {
 
 /// Whether the limits are kept, each with what was found.
 pub(crate) fn limits(found: &Acceptance) -> Markup {
+    decided(found.decision, found.limits.len(), &limits_table(found))
+}
+
+/// The decision on so many limits, above its table.
+pub(crate) fn decided(decision: Decision, count: usize, table: &Markup) -> Markup {
     html! {
-        section class={ "verdict " (found.decision.word()) } aria-labelledby="acceptance-title" {
-            h2 #acceptance-title { span.sign aria-hidden="true" {} (title_of(found)) }
-            (limits_table(found))
+        section class={ "verdict " (decision.word()) } aria-labelledby="acceptance-title" {
+            h2 #acceptance-title { span.sign aria-hidden="true" {} (decision_title(decision, count)) }
+            (table)
         }
     }
 }
@@ -56,7 +61,12 @@ pub(crate) fn limits_table(found: &Acceptance) -> Markup {
 
 /// The decision in a title.
 pub(crate) fn title_of(found: &Acceptance) -> &'static str {
-    match (found.decision, found.limits.len()) {
+    decision_title(found.decision, found.limits.len())
+}
+
+/// A decision on so many limits in a title.
+pub(crate) fn decision_title(decision: Decision, count: usize) -> &'static str {
+    match (decision, count) {
         (Decision::Pass, 1) => "PASS: the limit is kept",
         (Decision::Pass, _) => "PASS: every limit is kept",
         (Decision::Fail, 1) => "FAIL: the limit is exceeded",
@@ -89,7 +99,7 @@ fn column((k, limit): (usize, &AcceptedLimit)) -> (String, [Markup; 6]) {
 pub(crate) fn hands(
     of: (&'static str, Markup),
     record: &Record,
-    acceptance: Option<&Acceptance>,
+    acceptance: Option<&'static str>,
     (names, sha256): (&[&String], &BTreeMap<String, String>),
     (role, version): (&str, &str),
 ) -> Markup {
@@ -101,7 +111,7 @@ pub(crate) fn hands(
     let files: Vec<Markup> = names.iter().filter_map(short).collect();
     let mut all = vec![of];
     all.extend(record.certificate.as_ref().map(|number| ("Certificate", html! { (number) })));
-    all.extend(acceptance.map(|found| ("Acceptance", html! { (title_of(found)) })));
+    all.extend(acceptance.map(|title| ("Acceptance", html! { (title) })));
     all.push(("Made by", html! { "poecal " (version) }));
     if !files.is_empty() {
         all.push((

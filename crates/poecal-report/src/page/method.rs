@@ -136,7 +136,7 @@ fn group_digits(hash: &str) -> Markup {
 
 /// Files with their checksums: one with its key and description, the measurements with the used part of each, and mappings.
 pub(crate) fn files(
-    (first, key, what): (&String, &str, &str),
+    first: Option<(&String, &str, &str)>,
     measurements: &[String],
     sha256: &BTreeMap<String, String>,
     (entries, mappings): (&[InputEntry], &[&String]),
@@ -160,7 +160,9 @@ pub(crate) fn files(
             None => table.row(&[&shown, &what, &hash]),
         }
     };
-    add(first, path(first, key), what, None);
+    if let Some((first, key, what)) = first {
+        add(first, path(first, key), what, None);
+    }
     for (k, name) in measurements.iter().enumerate() {
         let shown = || path(name, format_args!("inputs.measurements.{k}"));
         let own: Vec<(&InputEntry, usize)> =
@@ -183,7 +185,7 @@ fn inputs(file: &CalibrationFile) -> Markup {
     let is_further = |name: &&String| **name != inputs.model && !inputs.measurements.contains(name);
     let further: Vec<&String> = inputs.sha256.keys().filter(is_further).collect();
     let own = (&inputs.model, "inputs.model", "model");
-    let table = files(own, &inputs.measurements, &inputs.sha256, (&inputs.files, &further));
+    let table = files(Some(own), &inputs.measurements, &inputs.sha256, (&inputs.files, &further));
     html! {
         h3 { "Inputs" }
         (table)

@@ -30,12 +30,14 @@ mod repairs;
 mod rows;
 mod shapes;
 mod sides;
+mod tested;
 mod trust;
 mod validation;
 
 pub use fleet::fleet_page;
-pub use paper::{CertificateExtras, certificate_page, visit_page};
+pub use paper::{CertificateExtras, certificate_page, test_certificate_page, visit_page};
 pub use plan::plan_page;
+pub use tested::test_page;
 pub use validation::validation_page;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -97,7 +97,7 @@ fn draw_arms(
         let ends = own().filter_map(|(_, it)| it.1.last()).map(|line| flat(&line[1])).collect();
         let arms = own().filter(|(k, _)| chosen.contains(k));
         let lines = arms.flat_map(|(_, it)| &it.1).map(lines).collect();
-        ArmSeries { name: name.to_owned(), style, lines, is_thin: true, points: ends }
+        ArmSeries { name: name.to_owned(), style, lines, is_thin: true, points: ends, ..ArmSeries::default() }
     };
     let mut arms = vec![of(RowPurpose::Judge, "to judge by", 1), of(RowPurpose::Fit, "to fit", 0)];
     arms.retain(|it| !it.points.is_empty());
@@ -109,6 +109,7 @@ fn draw_arms(
             lines: cone(sight, &flat),
             is_thin: true,
             points: place,
+            ..ArmSeries::default()
         });
     }
     let boxes: Vec<[[f64; 2]; 2]> =
@@ -119,7 +120,7 @@ fn draw_arms(
             style: 3,
             lines: boxes,
             is_thin: true,
-            points: Vec::new(),
+            ..ArmSeries::default()
         });
     }
     arms

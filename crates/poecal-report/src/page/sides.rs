@@ -10,8 +10,8 @@ use poecal_results::calibration_file::CalibrationFile;
 /// A picture from one side: the horizontal and the vertical coordinate.
 pub(crate) struct SideView {
     title: &'static str,
-    axes: [usize; 2],
-    names: [&'static str; 2],
+    pub(crate) axes: [usize; 2],
+    up: &'static str,
 }
 
 impl SideView {
@@ -22,18 +22,33 @@ impl SideView {
 }
 
 const VIEWS: [SideView; 2] = [
-    SideView { title: "From the side", axes: [0, 2], names: ["x of the base, m", "z, m"] },
-    SideView { title: "From above", axes: [0, 1], names: ["x of the base, m", "y, m"] },
+    SideView { title: "From the side", axes: [0, 2], up: "z" },
+    SideView { title: "From above", axes: [0, 1], up: "y" },
 ];
 
-/// Both pictures.
+/// Both pictures of a robot.
 pub(crate) fn pictures(arms: impl Fn(&SideView) -> Vec<ArmSeries>) -> Vec<Markup> {
+    views("", "the robot as lines between the frames of its joints", "m", arms)
+}
+
+/// Both pictures of something, in a unit of length.
+pub(crate) fn views(
+    name: &str,
+    what: &str,
+    unit: &str,
+    arms: impl Fn(&SideView) -> Vec<ArmSeries>,
+) -> Vec<Markup> {
     let one = |view: &SideView| {
+        let title = if name.is_empty() {
+            view.title.to_owned()
+        } else {
+            format!("{name}, {}", view.title.to_lowercase())
+        };
         let plot = ArmPlot {
-            title: view.title.to_owned(),
-            description: format!("{}: the robot as lines between the frames of its joints", view.title),
-            x_title: view.names[0].to_owned(),
-            y_title: view.names[1].to_owned(),
+            description: format!("{title}: {what}"),
+            title,
+            x_title: format!("x of the base, {unit}"),
+            y_title: format!("{}, {unit}", view.up),
             arms: arms(view),
         };
         PreEscaped(plot.svg())
@@ -55,6 +70,12 @@ pub(crate) fn draw_robot(file: &CalibrationFile) -> Vec<Markup> {
     pictures(|view| {
         let ends = lines.iter().map(|line| view.project(&line[1])).collect();
         let lines = lines.iter().map(|[a, b]| [view.project(a), view.project(b)]).collect();
-        vec![ArmSeries { name: "calibrated".to_owned(), style: 0, lines, is_thin: false, points: ends }]
+        vec![ArmSeries {
+            name: "calibrated".to_owned(),
+            style: 0,
+            lines,
+            points: ends,
+            ..ArmSeries::default()
+        }]
     })
 }

@@ -242,7 +242,7 @@ fn checks(found: &Validation, earlier: &[HistoryEntry]) -> Markup {
 fn inputs(found: &Validation) -> Markup {
     let inputs = &found.inputs;
     let own = (&inputs.calibration, "inputs.calibration", "calibration");
-    let table = method::files(own, &inputs.measurements, &inputs.sha256, (&inputs.files, &[]));
+    let table = method::files(Some(own), &inputs.measurements, &inputs.sha256, (&inputs.files, &[]));
     let content = html! {
         (table)
         (joins::sections(&inputs.joins))
@@ -264,7 +264,7 @@ fn signature(found: &Validation) -> Markup {
     certificate::hands(
         ("Robot", of),
         &found.record,
-        found.judgement.acceptance.as_ref(),
+        found.judgement.acceptance.as_ref().map(certificate::title_of),
         (&names, &found.inputs.sha256),
         ("Checked by", found.poecal_version),
     )

@@ -1,8 +1,12 @@
 //! A test of ISO 9283 from files to its JSON: commanded and measured poses of each row, figures, limits.
 
+mod judge;
 mod read;
 
-pub use read::{TestFile, TestOptions, read_test};
+pub use judge::{JudgedTest, StatedTest, judge_test};
+pub use read::TestOptions;
+
+use std::path::PathBuf;
 
 use serde::Serialize;
 
@@ -59,7 +63,10 @@ pub struct FigureEntry {
     /// Without the stated noise of the instrument.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub without_noise: Option<BoundsEntry>,
-    /// Predicted for commands that are corrected by the calibration.
+    /// As measured before, in the rows of an earlier test.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub before: Option<BoundsEntry>,
+    /// Predicted for commands that are corrected by the calibration; beside an earlier test by its rows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected: Option<BoundsEntry>,
 }
@@ -102,11 +109,15 @@ pub struct TestResult {
     pub poecal_version: &'static str,
     /// The files. The calibration is empty if there is none.
     pub inputs: ValidationInputs,
+    /// Files of the test before, if there was one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reference: Vec<String>,
     /// Statements about the test: payload, instrument and so on.
     #[serde(skip_serializing_if = "Record::is_empty")]
     pub record: Record,
-    /// Speed of the rows, as they state it; empty if they do not.
-    pub speed: String,
+    /// Standard deviation of the instrument's noise in each position component, millimetres, if every row states it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_mm: Option<f64>,
     /// The device frame.
     pub frame: TestFrameEntry,
     /// Number of rows.
@@ -123,6 +134,10 @@ pub struct TestResult {
     pub limits: Vec<FigureLimitEntry>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
+}
+
+fn shown_paths(paths: &[PathBuf]) -> Vec<String> {
+    paths.iter().map(|path| path.display().to_string()).collect()
 }
 
 impl BoundsEntry {
@@ -144,6 +159,7 @@ impl FigureEntry {
             unit: unit.symbol(),
             measured: shown(&figure.measured),
             without_noise: figure.without_noise.as_ref().map(shown),
+            before: None,
             corrected: figure.corrected.as_ref().map(shown),
         }
     }
@@ -172,15 +188,16 @@ impl TestResult {
         frame: TestFrame,
         limits: &[FigureLimit],
         inputs: ValidationInputs,
-        (speed, record): (String, Record),
+        record: Record,
     ) -> Result<Self> {
         let judged = limits.iter().map(|limit| limit.judge(&found.figures)).collect::<Result<Vec<_>>>()?;
         Ok(TestResult {
             schema: SCHEMA,
             poecal_version: env!("CARGO_PKG_VERSION"),
             inputs,
+            reference: Vec::new(),
             record,
-            speed,
+            noise_mm: found.noise[0].map(|it| 1e3 * it),
             frame: TestFrameEntry {
                 known: frame,
                 base_from_device: (&found.base_from_device).into(),
@@ -194,6 +211,23 @@ impl TestResult {
             limits: judged.iter().map(FigureLimitEntry::new).collect(),
             warnings: found.warnings.clone(),
         })
+    }
+
+    /// The same beside an earlier test of the same commands, whose rows also predict the figures of corrected ones.
+    ///
+    /// # Errors
+    /// As [`Iso9283::refuse_other_commands`].
+    pub fn compare(&mut self, found: &Iso9283, earlier: &Iso9283) -> Result<()> {
+        found.refuse_other_commands(earlier)?;
+        let before: Vec<FigureEntry> = earlier.figures.iter().map(FigureEntry::new).collect();
+        for own in &mut self.figures {
+            let same = before
+                .iter()
+                .find(|it| it.figure == own.figure && it.pose == own.pose && it.unit == own.unit);
+            own.before = same.map(|it| it.measured);
+            own.corrected = same.and_then(|it| it.corrected);
+        }
+        Ok(())
     }
 
     /// The text of its JSON.

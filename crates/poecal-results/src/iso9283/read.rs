@@ -3,7 +3,8 @@
 //! Commands are joint readings of a robot, or poses in the columns `commanded_x`, `commanded_y`, `commanded_z` with or without `commanded_roll`,
 //! `commanded_pitch`, `commanded_yaw`. These are readings too: of a gantry whose tip is the commanded pose. So all forms of measurement files are read.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use nalgebra::Vector3;
 
@@ -11,14 +12,15 @@ use super::TestFrame;
 use crate::calibration_file::CalibrationFile;
 use crate::model::{Model, ModelSource};
 use crate::predictions::{PredictionFrame, default_target, predict_readings};
+use crate::record::Record;
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::{TestLabels, TestRow};
-use poecal_import::{LabelColumns, MeasurementFile, ReadOptions, read, read_labels};
+use poecal_import::{MeasurementFile, ReadOptions, read, read_labels};
 use poecal_model::measurement::{Dataset, Observation, Quantity};
 use poecal_model::robot::{Joint, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Columns of what was done, in the order of [`labels`].
+/// Columns of what was done, in the order of [`TestLabels`].
 const LABELS: [&str; 7] = ["pose", "cycle", "approach", "series", "arm", "speed", "payload"];
 /// Columns of commanded positions, and of their orientations.
 const COMMANDED: [&str; 3] = ["commanded_x", "commanded_y", "commanded_z"];
@@ -41,17 +43,15 @@ pub struct TestOptions {
 
 /// Rows of a test.
 #[derive(Clone, Debug, Default)]
-pub struct TestFile {
+pub(super) struct TestFile {
     /// The rows.
-    pub rows: Vec<TestRow>,
+    pub(super) rows: Vec<TestRow>,
     /// Pose of the device in the base, if it is stated.
-    pub base_from_device: Option<Pose>,
+    pub(super) base_from_device: Option<Pose>,
     /// Result of reading the files.
-    pub read: MeasurementFile,
-    /// Speed, as the rows state it.
-    pub speed: String,
+    pub(super) read: MeasurementFile,
     /// Warnings, a sentence each.
-    pub warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
 }
 
 /// Reads the rows of a test. With a robot, commands are its joint readings, by the nominal model; of a calibration.json the rows are also predicted by the
@@ -60,14 +60,17 @@ pub struct TestFile {
 /// # Errors
 /// As [`poecal_import::read()`]; [`ErrorKind::Measurement`] if a row has no position, or rows are of several targets or device frames;
 /// [`ErrorKind::Option`] for the frame of a calibration without one.
-pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions) -> Result<TestFile> {
+pub(super) fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions) -> Result<TestFile> {
     let gantry = gantry(paths, options, model.is_none())?;
     let commanded = match (model, &gantry) {
         (Some(model), _) => nominal_model(model)?,
         (None, robot) => Model { robot: robot.clone(), source: ModelSource::Toml, path: PathBuf::new() },
     };
     let reading = ReadOptions { ignore_sets: true, ..options.reading.clone() };
-    let reading = model.map_or(reading.clone(), |model| model.reads(reading));
+    let mut reading = model.map_or(reading.clone(), |model| model.reads(reading));
+    if let Some((model, known)) = model.and_then(|it| Some((it, calibration(it)?.pictures.as_ref()?))) {
+        known.complete_options(&mut reading).map_err(|error| error.in_file(&model.path))?;
+    }
     let read = read(paths, &commanded.robot, &without_labels(&reading, &commanded.robot))?;
     let data = &read.data;
     refuse_several(data)?;
@@ -84,14 +87,12 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
         Some(model) if calibration(model).is_some() => Some(poses(&model.clone().corrected_model()?)?),
         _ => None,
     };
-    let labels = labels(paths, &commanded.robot, &reading);
+    let labels = RowLabels::read(paths, &commanded.robot, &reading);
     let rows = data.observations.iter().enumerate().map(|(row, seen)| {
-        let words =
-            labels.get(seen.source.file as usize).and_then(|it| it.lines.get(&(seen.source.line as usize)));
         let place = place(data, seen);
         let Some(position_m) = seen.measurement.position() else {
             return ErrorKind::Measurement.refuse(format!(
-                "{place}: found {}, expected the position of the target: x, y and z",
+                "{place}: found {}, expected the position of the target, x, y and z, or its corners in pictures: test with a device that measures these",
                 seen.measurement.function().name
             ));
         };
@@ -104,15 +105,40 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
                 seen.stated.get(Quantity::Position).or(options.sigma_position_m),
                 seen.stated.get(Quantity::Rotation).or(options.sigma_rotation_rad),
             ],
-            labels: words.map(|it| labels_from_words(it)).unwrap_or_default(),
+            labels: labels.find(data, row, seen),
             place,
         })
     });
     let mut rows = rows.collect::<Result<Vec<TestRow>>>()?;
     let mut warnings = doubts(model, &mut rows, target.as_deref(), options.frame);
     warnings.extend(model.and_then(|model| find_fitted_files(calibration(model)?, &read)));
-    let speed = rows.first().map(|it| it.labels.speed.clone()).unwrap_or_default();
-    Ok(TestFile { rows, base_from_device, speed, warnings, read })
+    Ok(TestFile { rows, base_from_device, warnings, read })
+}
+
+impl TestFile {
+    /// A record with the speed and load that rows state.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if it states another speed or load than the rows.
+    pub(super) fn completed(&self, record: Record) -> Result<Record> {
+        let Some(TestRow { labels, place, .. }) = self.rows.first() else { return Ok(record) };
+        let mut record = record;
+        let pairs =
+            [("speed", &labels.speed, &mut record.speed), ("payload", &labels.payload, &mut record.payload)];
+        for (key, own, stated) in pairs {
+            match stated {
+                _ if own.is_empty() => {}
+                None => *stated = Some(own.clone()),
+                Some(stated) if stated == own => {}
+                Some(stated) => {
+                    return ErrorKind::Option.refuse(format!(
+                        "{place}: found the {key} `{own}` and `{stated}` in the record, expected one {key}: correct either"
+                    ));
+                }
+            }
+        }
+        Ok(record)
+    }
 }
 
 /// The same options for the measurements alone, beside which labels have no meaning but as factors of the robot.
@@ -222,23 +248,44 @@ fn place(data: &Dataset, seen: &Observation) -> String {
     format!("{}:{}", file.unwrap_or_default(), seen.source.line)
 }
 
-/// Words of each file's lines; none of files in another form.
-fn labels(paths: &[PathBuf], robot: &Robot, reading: &ReadOptions) -> Vec<LabelColumns> {
-    let of = |path: &PathBuf| read_labels(Path::new(path), &LABELS, robot, reading).unwrap_or_default();
-    paths.iter().map(of).collect()
+/// Words of what was done, by lines of files and by pictures.
+#[derive(Default)]
+struct RowLabels {
+    by_line: BTreeMap<(PathBuf, usize), Vec<String>>,
+    by_image: BTreeMap<String, Vec<String>>,
 }
 
-/// LabelColumns of a row by its words.
-fn labels_from_words(words: &[String]) -> TestLabels {
-    let of = |at: usize| words.get(at).cloned().unwrap_or_default();
-    TestLabels {
-        pose: of(0),
-        cycle: of(1),
-        approach: of(2),
-        series: of(3),
-        arm: of(4),
-        speed: of(5),
-        payload: of(6),
+impl RowLabels {
+    /// Reads the columns of each file; a file in another form has none.
+    fn read(paths: &[PathBuf], robot: &Robot, reading: &ReadOptions) -> Self {
+        let names: Vec<&str> = LABELS.into_iter().chain(["image"]).collect();
+        let mut all = RowLabels::default();
+        for path in paths {
+            let columns = read_labels(path, &names, robot, reading).unwrap_or_default();
+            if !columns.has.iter().take(LABELS.len()).any(|has| *has) {
+                continue;
+            }
+            for (line, words) in columns.lines {
+                if let Some(image) = words.last().filter(|it| !it.is_empty()) {
+                    all.by_image.insert(image.clone(), words.clone());
+                }
+                all.by_line.insert((path.clone(), line), words);
+            }
+        }
+        all
+    }
+
+    /// Words of a row: those of its line, else of its picture.
+    fn find(&self, data: &Dataset, row: usize, seen: &Observation) -> TestLabels {
+        let path = data.files.get(seen.source.file as usize).cloned().unwrap_or_default();
+        let image = || {
+            let picture = data.pictures.all.get(data.pictures.of_row(u32::try_from(row).ok()?)?)?;
+            self.by_image.get(picture.image.as_ref()?)
+        };
+        let words = self.by_line.get(&(path, seen.source.line as usize)).or_else(image);
+        let word = |at: usize| words.and_then(|it| it.get(at)).cloned().unwrap_or_default();
+        let [pose, cycle, approach, series, arm, speed, payload] = std::array::from_fn(word);
+        TestLabels { pose, cycle, approach, series, arm, speed, payload }
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::{self as paper, LISTED};
+use super::{self as paper, BEFORE, LISTED};
 use crate::acceptance::format_limit;
 use crate::summary::{LeadingRows, delivered_name, expected_summary, judged_on, why_larger};
 use crate::table::number;
@@ -38,11 +38,6 @@ const STATED: [(&str, &str); 14] = [
     ("operator", "Measured by"),
     ("valid_until", "Valid until"),
 ];
-/// Where it is the first page of a report's print.
-const BEFORE: &str = "
-.attested { display: none; }
-@media print { .attested { display: block; break-after: page; border: 0; margin: 0; padding: 0; } }
-";
 
 /// What a certificate has beside the calibration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

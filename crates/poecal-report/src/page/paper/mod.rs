@@ -1,10 +1,13 @@
 //! A page of paper: complete in itself, without a script, on one page of A4.
 
 mod certificate_sheet;
+mod tested;
 mod visit;
 
 pub(crate) use certificate_sheet::first_page;
 pub use certificate_sheet::{CertificateExtras, certificate_page};
+pub(crate) use tested::first_page as first_page_of_test;
+pub use tested::test_certificate_page;
 pub use visit::visit_page;
 
 use std::collections::BTreeMap;
@@ -42,6 +45,11 @@ pub(crate) const STYLE: &str = "
 .attested code { font-size: .7rem; overflow-wrap: anywhere; }
 .attested .hands { display: grid; grid-template-columns: 1fr 1fr; gap: 1.5rem; margin-top: .5rem; }
 .attested .hands span { display: block; border-bottom: 1px solid #52606d; min-height: 4rem; color: #52606d; font-size: .72rem; }
+";
+/// Rules for the first page of a report's print.
+pub(crate) const BEFORE: &str = "
+.attested { display: none; }
+@media print { .attested { display: block; break-after: page; border: 0; margin: 0; padding: 0; } }
 ";
 /// Where it is a page of its own.
 const ALONE: &str = "
