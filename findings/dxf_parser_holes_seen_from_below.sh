@@ -25,7 +25,7 @@ console.log("dxf-parser", version("dxf-parser"), "and dxf", version("dxf"));
 const down = "\n210\n0.0\n220\n0.0\n230\n-1.0";
 const circle = (x, y, direction) => `\n0\nCIRCLE\n8\nholes\n10\n${x}\n20\n${y}\n30\n0.0\n40\n5.0${direction}`;
 const arc = (x, y, direction) => `\n0\nARC\n8\nholes\n10\n${x}\n20\n${y}\n30\n0.0\n40\n5.0${direction}\n50\n0.0\n51\n180.0`;
-// Both circles are of one hole at (40, 20), and the arc is around it, too.
+// Circles of one hole at (40, 20), and an arc around it.
 const text = `0\nSECTION\n2\nENTITIES${circle(40, 20, "")}${circle(-40, 20, down)}${arc(-40, 20, down)}\n0\nENDSEC\n0\nEOF\n`;
 
 let unchanged = true;

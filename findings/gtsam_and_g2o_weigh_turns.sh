@@ -7,7 +7,7 @@
 # half the turn, and the turn in GTSAM. A turn of 10 mrad with an information of 1e4, the inverse square of
 # 10 mrad, is an error of one standard deviation in GTSAM and of half one in g2o. So orientations of one file have
 # four times the weight in GTSAM, positions the same, and the poses found are others. Neither warns, and the
-# documentation of readG2o says nothing of it.
+# docstring of readG2o says nothing of it.
 # Whom it hurts: whoever writes the covariance of a tracker's or camera's poses into such a file: what is right
 # for one library doubles or halves the errors of orientations for the other. For g2o, multiply the information of
 # turns in rad by 4, and of turns with positions by 2.
@@ -77,7 +77,6 @@ written([(0, 0, 0), (0, 0, 0)], [(0, 1, (0, 0, 0), 0.01)], (1e-3, 0.01))
 graph, start = of_gtsam()
 squared = {"GTSAM": 2 * graph.error(start)}
 graph, _ = of_g2o()
-graph.compute_active_errors() if graph.initialize_optimization() else None
 (edge,) = graph.edges()
 edge.compute_error()
 squared["g2o"] = edge.chi2()

@@ -33,7 +33,7 @@ def angle(one, other):
 ours, theirs, lengths = [], [], []
 for true in Rotation.random(COUNT, rng=numbers):
     read = true * Rotation.from_rotvec(SCATTER * numbers.normal(size=(20, 3)))
-    mean = qmean(np.roll(read.as_quat(), 1, axis=1), axis=0)  # real part first
+    mean = qmean(np.roll(read.as_quat(), 1, axis=1), axis=0)  # order: real part first
     lengths.append(np.linalg.norm(mean))
     theirs.append(angle(Rotation.from_quat(np.roll(mean, -1)), true))
     ours.append(angle(read.mean(), true))

@@ -25,7 +25,7 @@ from spatialmath import SE3
 print("robotkinecal", version("robotkinecal"))
 NOISE = 2e-5
 numbers = np.random.default_rng(1)
-np.random.seed(1)  # for the library's basis of each joint
+np.random.seed(1)  # seed of the library's basis of each joint
 
 
 def arm():

@@ -48,7 +48,7 @@ try {
 console.log(`  an axis with two spaces: ${refused || "read"}`);
 unchanged &&= refused !== "";
 
-Object.assign(globalThis, { DOMParser, Document: class {}, Element: class {} }); // what a browser has
+Object.assign(globalThis, { DOMParser, Document: class {}, Element: class {} }); // parts of a browser
 const { default: URDFLoader } = await import("urdf-loader");
 const beside = new URDFLoader().parse(robot(TEXTS[3][1], TEXTS[3][2], "0  0 1")).joints.turn.position.toArray();
 console.log(`urdf-loader ${version("urdf-loader")}`);
