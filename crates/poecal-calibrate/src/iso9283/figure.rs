@@ -147,7 +147,7 @@ pub struct JudgedFigure {
     pub limit: FigureLimit,
     /// The largest value and the largest ends of intervals.
     pub worst: FigureBounds,
-    /// What that says of the limit.
+    /// Decision on the limit.
     pub decision: Decision,
 }
 
@@ -168,7 +168,7 @@ impl FigureLimit {
             ));
         }
         let most = |of: fn(&FigureBounds) -> f64| own().map(|it| of(&it.measured)).fold(0.0, f64::max);
-        // Of signed figures the size.
+        // The size of a signed figure counts.
         let worst = FigureBounds {
             found: most(|it| it.found.abs()),
             from: most(|it| it.from.max(-it.to)),

@@ -222,7 +222,7 @@ fn distances(base: &[PoseCell<'_>], commanded: &[Pose], calibrated: Option<&[Pos
     let at = |name: &str| base.iter().position(|it| it.pose == name);
     let apart = |poses: &[Pose], (a, b): (usize, usize)| (poses[a].translation - poses[b].translation).norm();
     let all = (0..base.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
-    // Of equal distances the first pair, whatever rounding says.
+    // The first pair of equal distances is taken, whatever the rounding.
     let mut farthest: Option<(usize, usize)> = None;
     for pair in all {
         if farthest.is_none_or(|it| apart(commanded, pair) > apart(commanded, it) + 1e-6) {

@@ -41,7 +41,7 @@ pub struct TestRow {
     pub rotation: Option<Matrix3<f64>>,
     /// Standard deviations of the instrument's noise, each component, if stated: metres, radians.
     pub noise: [Option<f64>; 2],
-    /// What was done.
+    /// Action that was taken.
     pub labels: TestLabels,
     /// File and line, for messages.
     pub place: String,

@@ -1,4 +1,4 @@
-//! What makes the page a certificate: what is stated of the session, whether limits are kept, and where it is signed.
+//! Parts that make the page a certificate: the record of the session, the decision on limits, and the lines for signatures.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use poecal_results::record::Record;
 /// Letters of a checksum that tell files apart.
 const SHORT: usize = 16;
 
-/// What is stated of the session; nothing where nothing is.
+/// Record of the session; empty if nothing was stated.
 pub(crate) fn record_markup(record: &Record) -> Markup {
     let entries = record.entries();
     let entry = |&(key, label, text): &(&'static str, &'static str, &str)| {
@@ -23,7 +23,7 @@ pub(crate) fn record_markup(record: &Record) -> Markup {
     html! { @if !entries.is_empty() { section.record aria-label="Session" { (facts(&entries)) } } }
 }
 
-/// Whether the limits are kept, each with what was found.
+/// Decision on each limit, with the figure that was found.
 pub(crate) fn limits(found: &Acceptance) -> Markup {
     decided(found.decision, found.limits.len(), &limits_table(found))
 }
@@ -95,7 +95,7 @@ fn column((k, limit): (usize, &AcceptedLimit)) -> (String, [Markup; 6]) {
     (format!("{} {}", limit.quantity, limit.statistic.words()), [decision, most, found, from, to, rows])
 }
 
-/// Where something is signed: what it is, whether limits are kept, the files with their checksums, and lines for two hands.
+/// Block for signatures: the title, the decision on limits, the files with their checksums, and lines for two hands.
 pub(crate) fn hands(
     of: (&'static str, Markup),
     record: &Record,

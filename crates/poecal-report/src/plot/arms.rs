@@ -13,7 +13,7 @@ pub struct ArmSeries {
     pub name: String,
     pub style: usize,
     pub lines: Vec<[[f64; 2]; 2]>,
-    /// Whether lines are drawn so that others show through.
+    /// True if lines are transparent.
     pub is_thin: bool,
     /// Points that are marked.
     pub points: Vec<[f64; 2]>,

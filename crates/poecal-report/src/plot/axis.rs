@@ -1,6 +1,6 @@
 //! Axes: which range is shown, where its ticks are, and where a value lies on it.
 
-/// How values are spread along an axis.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisScale {
     Linear,
@@ -50,12 +50,12 @@ impl PlotAxis {
     }
 }
 
-/// Where a value lies on an axis.
+/// Position of a value on an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AxisPosition {
     /// From 0 (low end) to 1 (high end).
     pub(crate) share: f64,
-    /// Whether the value itself lies on the axis; else it is drawn at the nearer end.
+    /// True if the value itself lies on the axis; else it is drawn at the nearer end.
     pub(crate) inside: bool,
 }
 
@@ -82,7 +82,7 @@ const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷',
 const TICKS: f64 = 5.0;
 
 impl Ruler {
-    /// Where a value lies; none if it is not a number.
+    /// Position of a value; `None` if it is not a number.
     pub(crate) fn place(&self, value: f64) -> Option<AxisPosition> {
         if value.is_nan() {
             return None;
@@ -115,7 +115,7 @@ impl Ruler {
         if low == high {
             high += 1;
         }
-        // What lies beyond gets an end of its own, where no value of the data is.
+        // Values beyond get an end of their own, free of other data.
         let beyond = |v: &f64| *v <= 0.0 || (*v > 0.0 && v.log10() < f64::from(low));
         let inside = low..=high;
         low -= i32::from(values.iter().any(beyond));

@@ -25,7 +25,7 @@ pub struct DotPlot {
     pub x: PlotAxis,
     pub rows: Vec<String>,
     pub series: Vec<Dots>,
-    /// Whether a row's dots lie on one line that joins them.
+    /// True if a line joins the dots of a row.
     pub joined: bool,
     pub mark: Option<AxisMark>,
 }

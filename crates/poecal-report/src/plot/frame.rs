@@ -1,4 +1,4 @@
-//! What plots share: title, legend, axes and notes around an area for the data.
+//! Frame of all plots: title, legend, axes and notes around an area for the data.
 
 use super::AxisMark;
 use super::axis::Ruler;
@@ -94,7 +94,7 @@ impl PlotFrame {
         PlotFrame::new(canvas, Area { left, top, right: WIDTH - 24.0, bottom }, x, mark)
     }
 
-    /// Where a value is drawn along the horizontal axis, px; nowhere if it is not a number.
+    /// Position of a value along the horizontal axis, px; `None` if it is not a number.
     pub(crate) fn position_across(&self, value: f64) -> Option<f64> {
         self.x.place(value).map(|place| self.area.x(place.share))
     }

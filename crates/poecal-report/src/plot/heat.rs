@@ -26,9 +26,9 @@ pub struct HeatCell {
     /// Steps from the origin to its corner that is nearest to it.
     pub at: [i64; 2],
     pub value: f64,
-    /// What is drawn as an arrow in it, along the axes.
+    /// Arrow that is drawn in it, along the axes.
     pub arrow: Option<[f64; 2]>,
-    /// What is said of it where a pointer rests.
+    /// Text under a resting pointer.
     pub told: String,
 }
 
@@ -40,9 +40,9 @@ pub struct HeatMap {
     pub axes: [String; 2],
     /// Side of a cell, in the unit of the axes.
     pub cell: f64,
-    /// Whether the vertical axis counts downwards, as the rows of an image.
+    /// True if the vertical axis counts downwards, as the rows of an image.
     pub downwards: bool,
-    /// What the values are, with their unit.
+    /// Name of the values, with their unit.
     pub values: String,
     /// The same of the arrows, if there are any.
     pub arrows: String,
@@ -126,7 +126,7 @@ impl HeatMap {
         canvas.axis_title([area.left, area.bottom + 32.0], Anchor::Start, &self.axes[0]);
     }
 
-    /// What the colours mean; gives the y below.
+    /// Draws the legend of the colours, and returns the y below.
     fn scale(&self, canvas: &mut Canvas, top: f64, largest: f64) -> f64 {
         const BOX: f64 = 12.0;
         const WIDE: f64 = 5.5;

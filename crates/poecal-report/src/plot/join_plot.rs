@@ -19,14 +19,14 @@ const MARKER: f64 = 4.0;
 pub struct JoinedEntry {
     pub from: f64,
     pub to: f64,
-    /// What is odd about it, by its place in [`JoinPlot::oddities`].
+    /// Oddity of the entry, by its place in [`JoinPlot::oddities`].
     pub odd: Option<usize>,
 }
 
 /// A list.
 pub struct JoinedList {
     pub name: String,
-    /// Where it has rows: all of a list without times, and of a recording the times between lost frames.
+    /// Ranges with rows: the whole of a list without times, and the times between lost frames of a recording.
     pub present: Vec<[f64; 2]>,
     pub entries: Vec<JoinedEntry>,
 }
@@ -40,7 +40,7 @@ pub struct JoinPlot {
     /// Speeds; none without times.
     pub lines: Vec<PlotLine>,
     pub lists: [JoinedList; 2],
-    /// Where entries that belong together are in the first list and in the second.
+    /// Positions of a pair of entries in the first list and in the second.
     pub links: Vec<[f64; 2]>,
     /// Names and styles of what is odd.
     pub oddities: Vec<(usize, &'static str)>,
@@ -83,7 +83,7 @@ impl JoinPlot {
         frame.finish(entries().next().is_some(), &self.title, &self.description)
     }
 
-    /// Whether any entry is odd so.
+    /// True if any entry has this oddity.
     fn has(&self, oddity: usize) -> bool {
         self.lists.iter().flat_map(|list| &list.entries).any(|it| it.odd == Some(oddity))
     }

@@ -1,4 +1,4 @@
-//! How often values fall into each part of a range: a strip of cells for each row.
+//! Counts of values in each part of a range: a strip of cells for each row.
 
 use super::frame::{self, WIDTH};
 use super::svg::{Anchor, Canvas, text_width};

@@ -28,7 +28,7 @@ const STYLES: [Style; 4] = [
     Style { colour: "#a8487f", dash: "9 3 2 3", marker: MarkerSymbol::Diamond },
 ];
 
-/// Where text stands relative to its point.
+/// Alignment of text relative to its point.
 #[derive(Clone, Copy)]
 pub(crate) enum Anchor {
     Start,

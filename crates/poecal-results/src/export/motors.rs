@@ -113,7 +113,7 @@ fn write_zeros(robot: &Robot, mut motors: Motors, controller: &Controller) -> Re
         let (name, motor) = motor_of(&mut motors, joint, Some(column))?;
         let [least, most] = [motor.range_min, motor.range_max].map(|it| it as f64);
         let middle = 0.5 * (least + most);
-        // What was counted at the joint's zero, in the column's own unit.
+        // Count at the joint's zero, in the column's own unit.
         let counted = -reading.offset / made.factor;
         let (zero, is_turned) = match made.unit.as_str() {
             "ticks" if made.factor.abs() == 1.0 => (counted * TICKS / TAU, made.factor < 0.0),

@@ -83,7 +83,7 @@ pub struct FigureLimitEntry {
     /// The largest figure of all poses, and the largest ends of intervals.
     #[serde(flatten)]
     pub worst: BoundsEntry,
-    /// What that says of the limit.
+    /// Decision on the limit.
     pub decision: Decision,
 }
 

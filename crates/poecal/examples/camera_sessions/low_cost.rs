@@ -170,7 +170,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
         Ok((calibration, data)) => {
             let mut readings = Vec::new();
             for (joints, _) in all.iter().skip(COUNT) {
-                // What the motor would read without play.
+                // Reading of the motor without play.
                 let motors: Vec<f64> = joints
                     .iter()
                     .zip(&arm.signs)

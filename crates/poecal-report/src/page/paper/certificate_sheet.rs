@@ -21,7 +21,7 @@ use poecal_results::record::Record;
 const MOST_JOINTS: usize = 12;
 /// Coverage factor of the expanded uncertainty.
 const COVERAGE: f64 = 2.0;
-/// What a certificate states, in the order of its table; what is missing is a blank line to write on.
+/// Entries of a certificate, in the order of its table; a missing one is a blank line to write on.
 const STATED: [(&str, &str); 14] = [
     ("certificate", "Certificate"),
     ("laboratory", "Laboratory"),
@@ -39,7 +39,7 @@ const STATED: [(&str, &str); 14] = [
     ("valid_until", "Valid until"),
 ];
 
-/// What a certificate has beside the calibration.
+/// Parts of a certificate beside the calibration.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CertificateExtras {
     /// SHA-256 of the calibration's file, if it is known.

@@ -51,7 +51,7 @@ pub(crate) const BEFORE: &str = "
 .attested { display: none; }
 @media print { .attested { display: block; break-after: page; border: 0; margin: 0; padding: 0; } }
 ";
-/// Where it is a page of its own.
+/// Rules for a page of its own.
 const ALONE: &str = "
 :root { color-scheme: light; }
 @page { size: A4; margin: 14mm 15mm; }

@@ -26,7 +26,7 @@ const STYLE: &str = "
 .visit h2 { margin: .5rem 0 .15rem; }
 .visit .hands span { min-height: 3.2rem; }
 ";
-/// What the page states of the robot and its cell; what is missing is a blank line to write on.
+/// Entries on the robot and its cell; a missing one is a blank line to write on.
 const STATED: [(&str, &str); 8] = [
     ("certificate", "Certificate"),
     ("customer", "Customer"),
@@ -37,7 +37,7 @@ const STATED: [(&str, &str); 8] = [
     ("place", "Place"),
     ("laboratory", "Laboratory"),
 ];
-/// What it states of both sessions.
+/// Entries on both sessions.
 const SESSION: [(&str, &str); 5] = [
     ("date", "Date"),
     ("operator", "Measured by"),
@@ -68,7 +68,7 @@ const SESSION: [(&str, &str); 5] = [
 pub fn visit_page(told: &TrackReport, file: &CalibrationFile, time: Option<&str>) -> PagePieces {
     let day = time.and_then(|time| time.split('T').next());
     let title = format!("Visit of {}", file.robot.name);
-    // What stays as it was is that of the calibration; what belongs to a day is the visit's own.
+    // Entries on the robot are the calibration's, those on the day are the visit's own.
     let robot = file.record.clone().override_with(&told.record);
     let instead = |key: &str| (key == "robot").then(|| file.robot.name.clone());
     let sheet = html! {
