@@ -75,8 +75,7 @@ fn main() {
                 println!("{}", arm_json(&arm, name, off.0 != 0.0));
                 continue;
             }
-            let label =
-                if off.0 == 0.0 { name.to_owned() } else { format!("{name} {:.1}°", off.0.to_degrees()) };
+            let label = if off.0 == 0.0 { name.to_owned() } else { format!("{name} {:.1}°", off.0.to_degrees()) };
             let measured = measure_reach(&arm, targets);
             println!("{}", if is_json { measured.json(name, off) } else { measured.line(&label) });
         }
@@ -153,8 +152,7 @@ impl Measured {
             let begin = Instant::now();
             let found = black_box(at(black_box(&target), &q));
             self.at_us.push(1e6 * begin.elapsed().as_secs_f32());
-            let is_same =
-                |branch: &[f64; N]| branch.iter().zip(&q).all(|(a, b)| wrap_angle(a - b).abs() < SAME);
+            let is_same = |branch: &[f64; N]| branch.iter().zip(&q).all(|(a, b)| wrap_angle(a - b).abs() < SAME);
             let is_found = found.as_slice().iter().any(is_same);
             self.branches += found.as_slice().len();
             self.found += usize::from(is_found);
@@ -209,11 +207,7 @@ impl Measured {
 
     fn json(&self, kind: &str, (off_rad, off_m): (f64, f64)) -> String {
         let fields = [
-            format!(
-                "\"kind\": \"{kind}\", \"calibrated\": {}, \"targets\": {}",
-                off_rad != 0.0,
-                self.targets
-            ),
+            format!("\"kind\": \"{kind}\", \"calibrated\": {}, \"targets\": {}", off_rad != 0.0, self.targets),
             format!("\"axes_off_rad\": {off_rad}, \"axes_off_m\": {off_m}"),
             format!("\"nearest_median_us\": {}", quantile(&self.nearest_us, 0.5)),
             format!("\"nearest_p99_us\": {}", quantile(&self.nearest_us, 0.99)),

@@ -89,13 +89,9 @@ impl Arm {
             let all = joint.value.linear.iter().copied();
             all.filter(|(_, factor)| factor.abs() > LEAST_SENSE).collect()
         };
-        let moved: Vec<Vec<(usize, f64)>> =
-            model.joints.iter().map(main).filter(|it| !it.is_empty()).collect();
+        let moved: Vec<Vec<(usize, f64)>> = model.joints.iter().map(main).filter(|it| !it.is_empty()).collect();
         let is_serial = moved.len() == model.readings
-            && moved
-                .iter()
-                .enumerate()
-                .all(|(index, of)| matches!(of[..], [(reading, _)] if reading == index));
+            && moved.iter().enumerate().all(|(index, of)| matches!(of[..], [(reading, _)] if reading == index));
         arm.senses = is_serial.then(|| moved.iter().flatten().map(|(_, factor)| factor.abs()).collect());
         let is_rigid = model.joints.len() == model.readings
             && model.joints.iter().enumerate().all(|(index, joint)| joint.value.is_reading(index));
@@ -177,8 +173,9 @@ impl Arm {
     pub(crate) fn placed_at<const N: usize>(&self, q: &[f64; N]) -> ArmState<N> {
         // Parts that only one of the two needs are not computed for the other.
         match &self.real {
-            Some(real) => ConfigurationBatch::from_readings(q)
-                .place_with(|rows| rows.place_real(real, PassOutputs::Steps)),
+            Some(real) => {
+                ConfigurationBatch::from_readings(q).place_with(|rows| rows.place_real(real, PassOutputs::Steps))
+            }
             None => ConfigurationBatch::from_readings(q)
                 .place_with(|rows| rows.place_rigid(&self.chain, PassOutputs::Steps)),
         }

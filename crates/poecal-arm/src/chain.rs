@@ -83,12 +83,7 @@ impl LinkChain {
             let size = c.hypot(s);
             let tilt = (c / size, s / size);
             let turned = (side.y * tilt.0 + side.z * tilt.1).atan2(side.x);
-            links.push(ChainLink {
-                origin: before(frame.translation - old.translation),
-                tilt,
-                turned,
-                slides,
-            });
+            links.push(ChainLink { origin: before(frame.translation - old.translation), tilt, turned, slides });
         }
         length_m += (home.translation - frame.translation).norm();
         LinkChain { start, links, tip: frame.inverse() * *home, length_m }

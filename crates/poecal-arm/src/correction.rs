@@ -186,8 +186,7 @@ impl ReadingCorrections {
     /// this manner, or if no singularity is near. It is also `None` if the orientation would end farther off than without correction and far
     /// beyond the arm's usual error.
     fn solve_by_turning(&self, target: &Pose, meant: &[f64], q: &mut [f64]) -> Option<CorrectionResidual> {
-        let of =
-            |(left_m, left_rad)| CorrectionResidual { outcome: CorrectionOutcome::Turned, left_m, left_rad };
+        let of = |(left_m, left_rad)| CorrectionResidual { outcome: CorrectionOutcome::Turned, left_m, left_rad };
         self.begin(meant, q);
         self.point(target, meant, q)?;
         let found = of(self.tip_error(target, q));
@@ -238,9 +237,7 @@ impl ReadingCorrections {
     #[must_use]
     pub fn share_of_most(&self, meant: &[f64], q: &[f64]) -> f64 {
         let shares = q.iter().zip(meant).zip(&self.zeros).enumerate();
-        shares
-            .map(|(joint, ((q, meant), zero))| (q - meant - zero).abs() / self.most_of(joint))
-            .fold(0.0, f64::max)
+        shares.map(|(joint, ((q, meant), zero))| (q - meant - zero).abs() / self.most_of(joint)).fold(0.0, f64::max)
     }
 
     /// Configuration with the pose, if it is on this branch; keeps the joint that is too far.
@@ -293,17 +290,13 @@ impl ReadingCorrections {
         // Steps of prismatic joints are counted in reaches, as angles.
         let unit = |joint: usize| if slides[joint] { reach } else { 1.0 };
         let most: [f64; MOST_JOINTS] =
-            core::array::from_fn(
-                |joint| if joint < n { MARGIN * self.most_of(joint) / unit(joint) } else { 0.0 },
-            );
-        let at =
-            |q: &[f64]| {
-                let placed = self.actual.placement(q);
-                let ways = FirstOrderMotions::from_placement(&placed, n, |joint| {
-                    if slides[joint] { 1.0 } else { 1.0 / reach }
-                });
-                (TipResidual::new(&placed.tip, target), ways)
-            };
+            core::array::from_fn(|joint| if joint < n { MARGIN * self.most_of(joint) / unit(joint) } else { 0.0 });
+        let at = |q: &[f64]| {
+            let placed = self.actual.placement(q);
+            let ways =
+                FirstOrderMotions::from_placement(&placed, n, |joint| if slides[joint] { 1.0 } else { 1.0 / reach });
+            (TipResidual::new(&placed.tip, target), ways)
+        };
         for step in 0..MOST_STEPS {
             let (left, ways) = at(q);
             let mut from = [0.0; MOST_JOINTS];

@@ -47,7 +47,5 @@ pub use arm::Arm;
 pub use arm_state::MOST_JOINTS;
 pub use branches::{AllBranches, Branches, HeldBranches, MOST_BRANCHES};
 pub use correction::{CorrectionOutcome, CorrectionResidual, MaxCorrection, ReadingCorrections};
-pub use model::{
-    ArmModel, GravityTorque, JointValue, ModelJoint, NominalJoint, PulledWeight, TermCurve, Wave,
-};
+pub use model::{ArmModel, GravityTorque, JointValue, ModelJoint, NominalJoint, PulledWeight, TermCurve, Wave};
 pub use terms::{GroupRow, Term, TermArgument, TermFunction, TermGroup, TermKind, TermRow};

@@ -163,11 +163,9 @@ impl ArmModel {
             screw(&it.screw) && reading(it.reading) && it.factor.is_finite() && it.constant.is_finite()
         };
         let wave = |it: &Wave| {
-            reading(it.reading)
-                && [it.factor, it.offset, it.order, it.cosine, it.sine].iter().all(|it| it.is_finite())
+            reading(it.reading) && [it.factor, it.offset, it.order, it.cosine, it.sine].iter().all(|it| it.is_finite())
         };
-        let weight =
-            |it: &PulledWeight| it.after <= self.drawing.len() && it.size.is_finite() && finite(&it.place);
+        let weight = |it: &PulledWeight| it.after <= self.drawing.len() && it.size.is_finite() && finite(&it.place);
         let pull = |it: &GravityTorque| {
             it.after <= self.drawing.len()
                 && finite(&it.direction)

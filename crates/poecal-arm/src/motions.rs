@@ -19,11 +19,7 @@ pub(crate) struct FirstOrderMotions {
 }
 
 impl FirstOrderMotions {
-    pub(crate) fn from_placement(
-        placed: &ArmState<MOST_JOINTS>,
-        n: usize,
-        scale: impl Fn(usize) -> f64,
-    ) -> Self {
+    pub(crate) fn from_placement(placed: &ArmState<MOST_JOINTS>, n: usize, scale: impl Fn(usize) -> f64) -> Self {
         let columns = core::array::from_fn(|joint| {
             let (v, w) = placed.column(joint);
             if joint < n { (v * scale(joint), w) } else { (Vector3::zeros(), Vector3::zeros()) }

@@ -127,11 +127,7 @@ fn column<const N: usize>(arm: &Arm, placed: &ArmState<N>, joint: usize, inverse
 
 /// Columns of six joints: motion of the tip's point (over the reach) and its rotation.
 #[inline(always)]
-fn columns_of_six(
-    arm: &SixJoints<'_>,
-    placed: &ArmState<6>,
-    inverse_reach: f64,
-) -> [(Vector3<f64>, Vector3<f64>); 6] {
+fn columns_of_six(arm: &SixJoints<'_>, placed: &ArmState<6>, inverse_reach: f64) -> [(Vector3<f64>, Vector3<f64>); 6] {
     let of = |joint: usize| {
         let (v, w) = placed.column(joint);
         // A step of a prismatic joint is counted in reaches, so that it is of the size of an angle.
@@ -142,12 +138,7 @@ fn columns_of_six(
 
 /// Step of six joints that removes the remainder, to first order.
 #[inline]
-fn step_of_six(
-    arm: &SixJoints<'_>,
-    placed: &ArmState<6>,
-    left: &TipResidual,
-    inverse_reach: f64,
-) -> Option<[f64; 6]> {
+fn step_of_six(arm: &SixJoints<'_>, placed: &ArmState<6>, left: &TipResidual, inverse_reach: f64) -> Option<[f64; 6]> {
     let p = left.position * inverse_reach;
     let columns = columns_of_six(arm, placed, inverse_reach);
     if let Some(step) = small_systems::solve_halves(&columns, (p, left.rotation), 1e-4) {
@@ -267,12 +258,7 @@ pub(crate) fn solve_damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -
 
 /// A damped step of `n` joints by their columns, the least motion that removes the remainder; `None` if it cannot be computed.
 #[inline]
-fn damped_step(
-    columns: &[[f64; 6]; MOST_JOINTS],
-    e: [f64; 6],
-    n: usize,
-    damping: f64,
-) -> Option<[f64; MOST_JOINTS]> {
+fn damped_step(columns: &[[f64; 6]; MOST_JOINTS], e: [f64; 6], n: usize, damping: f64) -> Option<[f64; MOST_JOINTS]> {
     let mut step = [0.0; MOST_JOINTS];
     let is_solved = if n >= 6 {
         // Jᵀ (J Jᵀ + λ)⁻¹ e: the least of all steps with the same effect.

@@ -7,9 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::arm_state::MOST_JOINTS;
 use crate::lie::{Pose, Screw};
-use crate::model::{
-    ArmModel, GravityTorque, JointValue, ModelJoint, NominalJoint, PulledWeight, TermCurve, Wave,
-};
+use crate::model::{ArmModel, GravityTorque, JointValue, ModelJoint, NominalJoint, PulledWeight, TermCurve, Wave};
 
 /// First number of a list, the version of its order: without curves, and with them.
 const VERSIONS: [f64; 2] = [1.0, 2.0];
@@ -48,8 +46,7 @@ impl ArmModel {
         let axis = |out: &mut Vec<f64>, screw: &Screw| {
             out.push(if screw.is_prismatic() { 1.0 } else { 0.0 });
             out.extend(screw.direction().iter());
-            let point =
-                if screw.is_prismatic() { Vector3::zeros() } else { screw.nearest_point(&Vector3::zeros()) };
+            let point = if screw.is_prismatic() { Vector3::zeros() } else { screw.nearest_point(&Vector3::zeros()) };
             out.extend(point.iter());
         };
         for ModelJoint { screw, value } in &self.joints {
@@ -235,13 +232,7 @@ mod tests {
         assert_eq!(ArmModel::from_numbers(&numbers).unwrap().numbers(), numbers);
 
         let (term, linear) = (TermKind::Sine.with_number(3), [(0, 2.0)].to_vec());
-        model.joints[0].value.curves.push(TermCurve {
-            term,
-            coefficient: 0.1,
-            constant: 0.2,
-            linear,
-            pull: None,
-        });
+        model.joints[0].value.curves.push(TermCurve { term, coefficient: 0.1, constant: 0.2, linear, pull: None });
         let again = ArmModel::from_numbers(&model.numbers()).unwrap();
         assert_eq!((model.numbers()[0], again.joints), (2.0, model.joints));
     }

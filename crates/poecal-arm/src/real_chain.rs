@@ -121,11 +121,7 @@ impl RealChain {
             let frame = frame_on_axis(&joint.screw, &before.translation);
             let JointValue { constant, linear, waves, pull, curves } = &joint.value;
             let curve = |it: &TermCurve| {
-                (
-                    it.term,
-                    it.coefficient,
-                    ReadingSum::new(it.constant, &it.linear, it.pull.as_ref(), &from_base),
-                )
+                (it.term, it.coefficient, ReadingSum::new(it.constant, &it.linear, it.pull.as_ref(), &from_base))
             };
             links.push(RealJoint {
                 frame: before.inverse() * frame,
@@ -137,8 +133,7 @@ impl RealChain {
             before = frame;
         }
         let tip = before.inverse() * model.home;
-        let pulls =
-            |it: &RealJoint| it.own.moment.is_some() || it.curves.iter().any(|(.., of)| of.moment.is_some());
+        let pulls = |it: &RealJoint| it.own.moment.is_some() || it.curves.iter().any(|(.., of)| of.moment.is_some());
         let has_moments = links.iter().any(pulls);
         let has_functions = has_moments || links.iter().any(|it| !it.waves.is_empty());
         let (readings, gravity) = (model.readings, model.gravity);

@@ -81,11 +81,7 @@ pub(crate) fn solve_halves(
 }
 
 /// Solves `A x = b` for the first `n` unknowns of a symmetric positive definite matrix in place, by Cholesky's factor.
-pub(crate) fn solve_symmetric<const N: usize>(
-    a: &mut [[f64; N]; N],
-    b: &mut [f64; N],
-    n: usize,
-) -> Option<()> {
+pub(crate) fn solve_symmetric<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N], n: usize) -> Option<()> {
     for j in 0..n {
         for k in 0..j {
             let factor = a[j][k];

@@ -73,10 +73,7 @@ mod tests {
             let angle = 0.37 * f64::from(k);
             let (cosine, sine) = cosine_and_sine(angle);
             // Two units in the last place of numbers up to 1.
-            assert!(
-                (cosine - angle.cos()).abs() < 2.3e-16 && (sine - angle.sin()).abs() < 2.3e-16,
-                "{angle}"
-            );
+            assert!((cosine - angle.cos()).abs() < 2.3e-16 && (sine - angle.sin()).abs() < 2.3e-16, "{angle}");
         }
     }
 

@@ -71,9 +71,7 @@ pub(crate) fn zeros(nominal: &Arm, actual: &Arm) -> [f64; MOST_JOINTS] {
         }
         let longest = step.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
         let next: [f64; MOST_JOINTS] =
-            core::array::from_fn(
-                |joint| if joint < n { zeros[joint] + step[joint] * unit(joint) } else { 0.0 },
-            );
+            core::array::from_fn(|joint| if joint < n { zeros[joint] + step[joint] * unit(joint) } else { 0.0 });
         let there = at(&next);
         if there.2 < squares {
             zeros = next;

@@ -122,8 +122,7 @@ pub unsafe extern "C" fn poecal_forward(arm: *const PoecalArm, q: *const f64, po
         return -1;
     }
     // SAFETY: by the contract above.
-    let (q, pose) =
-        unsafe { (slice::from_raw_parts(q, arm.arm.joints()), slice::from_raw_parts_mut(pose, 16)) };
+    let (q, pose) = unsafe { (slice::from_raw_parts(q, arm.arm.joints()), slice::from_raw_parts_mut(pose, 16)) };
     let tip = arm.arm.forward_kinematics(q);
     for row in 0..3 {
         for column in 0..3 {
@@ -148,8 +147,7 @@ pub unsafe extern "C" fn poecal_jacobian(arm: *const PoecalArm, q: *const f64, j
     }
     let joints = arm.arm.joints();
     // SAFETY: by the contract above.
-    let (q, out) =
-        unsafe { (slice::from_raw_parts(q, joints), slice::from_raw_parts_mut(jacobian, 6 * joints)) };
+    let (q, out) = unsafe { (slice::from_raw_parts(q, joints), slice::from_raw_parts_mut(jacobian, 6 * joints)) };
     for (out, (v, w)) in out.chunks_exact_mut(6).zip(arm.arm.jacobian(q)) {
         out.copy_from_slice(&[v.x, v.y, v.z, w.x, w.y, w.z]);
     }

@@ -60,17 +60,17 @@ pub use crate::validate::judge::{
     DeliveredModel, JudgedCalibration, JudgedModel, Judgement, MovedDevice, RefittedPart, improvement, judge,
 };
 pub use acceptance::{
-    Acceptance, AcceptanceLimit, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows,
-    AcceptedStatistic, Decision,
+    Acceptance, AcceptanceLimit, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic,
+    Decision,
 };
 pub use corrections::{
-    CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes,
-    unknowns, whitened_rows,
+    CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes, unknowns,
+    whitened_rows,
 };
 pub use events::{Event, EventKind, RepairLimit, RepairLimits, Repairs, family};
 pub use iso9283::{
-    FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, PoseCluster, STANDARD_CYCLES, TestFigure,
-    TestLabels, TestRow, iso9283,
+    FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, PoseCluster, STANDARD_CYCLES, TestFigure, TestLabels,
+    TestRow, iso9283,
 };
 pub use poecal_model::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use robust::{Loss, RobustLoss, Robustness, RowInfluence, RowJudgement, row_influence};

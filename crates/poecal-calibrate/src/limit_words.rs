@@ -43,7 +43,6 @@ impl FromStr for AcceptanceLimits {
 }
 
 fn bad(text: &str, expected: &str) -> Error {
-    ErrorKind::Option.error(format!(
-        "found `{text}` as a limit, expected {expected}, like 0.2mm, p95:0.3mm, max:0.5mm or 0.05deg"
-    ))
+    ErrorKind::Option
+        .error(format!("found `{text}` as a limit, expected {expected}, like 0.2mm, p95:0.3mm, max:0.5mm or 0.05deg"))
 }

@@ -85,11 +85,9 @@ impl Console {
         }
         let mut out = std::io::stdout().lock();
         match out.write_all(bytes).and_then(|()| out.flush()) {
-            Err(error) if error.kind() != ErrorKind::BrokenPipe => poecal_numerics::error::ErrorKind::File
-                .refuse(format!(
-                    "standard output cannot be written to ({error}), expected room for {} bytes",
-                    bytes.len()
-                )),
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => poecal_numerics::error::ErrorKind::File.refuse(
+                format!("standard output cannot be written to ({error}), expected room for {} bytes", bytes.len()),
+            ),
             _ => Ok(()),
         }
     }

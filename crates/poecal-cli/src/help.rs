@@ -56,8 +56,7 @@ mod tests {
 
     #[test]
     fn every_command_is_in_one_group() {
-        let mut grouped: Vec<&str> =
-            GROUPS.iter().flat_map(|it| it.1.iter().copied()).chain(NOT_LISTED).collect();
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|it| it.1.iter().copied()).chain(NOT_LISTED).collect();
         let command = command_line();
         let mut all: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
         grouped.sort_unstable();

@@ -84,12 +84,10 @@ fn parse_command_line(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments)
         Ok((matches, arguments))
     };
     let told = |words: &[OsString], error: clap::Error| match parsed(&printable_words(words)) {
-        Err(shown) => {
-            match renamed_words::sentence(words, &shown).or_else(|| without_json::sentence(words, &shown)) {
-                Some(sentence) => refused(&ErrorKind::Option.error(sentence)),
-                None => usage(&shown),
-            }
-        }
+        Err(shown) => match renamed_words::sentence(words, &shown).or_else(|| without_json::sentence(words, &shown)) {
+            Some(sentence) => refused(&ErrorKind::Option.error(sentence)),
+            None => usage(&shown),
+        },
         // Words that are valid without control characters can only be wrong because of these.
         Ok(_) => {
             let message = error.to_string();
@@ -98,9 +96,8 @@ fn parse_command_line(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments)
         }
     };
     let (matches, arguments) = parsed(&typed).map_err(|error| told(&typed, error))?;
-    let Some(completed) =
-        limits::run_with_limits(stated_limits(&arguments), || settings::complete(&typed, &matches))
-            .map_err(|error| refused(&error))?
+    let Some(completed) = limits::run_with_limits(stated_limits(&arguments), || settings::complete(&typed, &matches))
+        .map_err(|error| refused(&error))?
     else {
         return Ok((typed, arguments));
     };
@@ -203,11 +200,7 @@ fn stated_limits(arguments: &Arguments) -> ResourceLimits {
 }
 
 /// Runs a command; returns the exit code.
-fn run_command(
-    command: &Command,
-    typed: &[OsString],
-    console: &Console,
-) -> poecal_numerics::error::Result<u8> {
+fn run_command(command: &Command, typed: &[OsString], console: &Console) -> poecal_numerics::error::Result<u8> {
     match command {
         Command::Init(options) => commands::init(options, console),
         Command::Calibrate(options) => commands::calibrate(options, typed, console),

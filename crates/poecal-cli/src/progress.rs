@@ -12,8 +12,7 @@ impl Progress {
 
         use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-        let draws =
-            std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
+        let draws = std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
         if quiet || !draws {
             return Progress(ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden()));
         }

@@ -61,8 +61,7 @@ fn signed_and_symbol<'a>(text: &'a str, example: &str) -> Result<(f64, &'a str)>
 }
 
 fn bad(text: &str, what: &str, expected: &str, example: &str) -> Error {
-    ErrorKind::Option
-        .error(format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}"))
+    ErrorKind::Option.error(format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}"))
 }
 
 /// A length and an angle as stated by the user: `1deg,2mm` in either order; an omitted one is zero.
@@ -181,10 +180,8 @@ pub(crate) fn error_m(text: &str) -> std::result::Result<f64, String> {
 pub(crate) fn robot_error(text: &str) -> std::result::Result<RobotError, String> {
     let (calibrated, corrected) =
         text.split_once(',').map_or((text, None), |(first, second)| (first, Some(second.trim())));
-    let error = RobotError {
-        calibrated_m: error_m(calibrated.trim())?,
-        corrected_m: corrected.map(error_m).transpose()?,
-    };
+    let error =
+        RobotError { calibrated_m: error_m(calibrated.trim())?, corrected_m: corrected.map(error_m).transpose()? };
     if error.corrected_m.is_some_and(|it| it > error.calibrated_m) {
         return Err(format!(
             "found `{text}`, expected the error of the calibrated model and behind it the smaller one of the corrected model"
@@ -195,16 +192,13 @@ pub(crate) fn robot_error(text: &str) -> std::result::Result<RobotError, String>
 
 /// Parser of a position for clap: three numbers, and their unit behind the last.
 pub(crate) fn place_m(text: &str) -> std::result::Result<[f64; 3], String> {
-    let bad =
-        || format!("found `{text}`, expected three numbers with a unit behind the last, like 50,0,30mm");
+    let bad = || format!("found `{text}`, expected three numbers with a unit behind the last, like 50,0,30mm");
     let (before, last) = text.rsplit_once(',').ok_or_else(bad)?;
     let (z, symbol) = signed_and_symbol(last, "30mm").map_err(|_| bad())?;
     let unit = NamedUnit::parse(symbol, Unit::Metre).map_err(|error| error.to_string())?;
     let others: Vec<Option<f64>> = before.split(',').map(|part| part.trim().parse().ok()).collect();
     match others[..] {
-        [Some(x), Some(y)] if f64::is_finite(x) && f64::is_finite(y) => {
-            Ok([x, y, z].map(|it| unit.to_si(it)))
-        }
+        [Some(x), Some(y)] if f64::is_finite(x) && f64::is_finite(y) => Ok([x, y, z].map(|it| unit.to_si(it))),
         _ => Err(bad()),
     }
 }
@@ -249,11 +243,8 @@ impl FromStr for WorkspaceChoice {
 
 /// Parser of a box for clap: two corners, and the unit of all numbers behind the last.
 pub(crate) fn box_m(text: &str) -> std::result::Result<[[f64; 3]; 2], String> {
-    let bad = || {
-        format!(
-            "found `{text}`, expected two corners with a unit behind the last, like 300,-200,0:600,200,500mm"
-        )
-    };
+    let bad =
+        || format!("found `{text}`, expected two corners with a unit behind the last, like 300,-200,0:600,200,500mm");
     let (first, last) = text.split_once(':').ok_or_else(bad)?;
     let b = place_m(last).map_err(|_| bad())?;
     let symbol = last.trim_start_matches(|c: char| !c.is_alphabetic());
@@ -337,9 +328,7 @@ mod tests {
         let most = |text: &str| most_change(text).map(|it| (it.turning_rad, it.sliding_m));
         assert_eq!(most("3deg"), Ok((3f64.to_radians(), 0.002)));
         assert_eq!(most("1mm,1deg"), Ok((1f64.to_radians(), 0.001)));
-        assert!(
-            most("0deg").unwrap_err().starts_with("found `0deg`, expected an angle and a length above 0")
-        );
+        assert!(most("0deg").unwrap_err().starts_with("found `0deg`, expected an angle and a length above 0"));
         let message = |text: &str| both(text).unwrap_err().to_string();
         assert_eq!(message("1mm,2mm"), "found `1mm,2mm`, expected one length and one angle, like 2mm,1deg");
         assert_eq!(message("1"), "found `1` without a unit, expected a number with a unit, like 2mm or 1deg");

@@ -36,10 +36,8 @@ mod tests {
     #[test]
     fn each_old_word_has_its_sentence_and_its_row() {
         let changes = include_str!("../../../CHANGELOG.md");
-        let section =
-            changes.split("\n### Names that changed\n").nth(1).unwrap().split("\n#").next().unwrap();
-        let rows: Vec<&str> =
-            section.lines().filter(|line| line.starts_with('|') && line.contains('`')).collect();
+        let section = changes.split("\n### Names that changed\n").nth(1).unwrap().split("\n#").next().unwrap();
+        let rows: Vec<&str> = section.lines().filter(|line| line.starts_with('|') && line.contains('`')).collect();
         let row = |(commands, old, new): &(&str, &str, &str)| {
             let commands: Vec<String> =
                 commands.split(' ').filter(|it| !it.is_empty()).map(|it| format!("`{it}`")).collect();
@@ -51,17 +49,12 @@ mod tests {
             for command in commands.split(' ') {
                 let mut typed: Vec<OsString> = vec!["poecal".into()];
                 typed.extend(
-                    [command, old]
-                        .iter()
-                        .flat_map(|it| it.split(' '))
-                        .filter(|it| !it.is_empty())
-                        .map(OsString::from),
+                    [command, old].iter().flat_map(|it| it.split(' ')).filter(|it| !it.is_empty()).map(OsString::from),
                 );
                 let error = program.clone().try_get_matches_from(&typed).unwrap_err();
                 let said = sentence(&typed, &error).unwrap_or_else(|| panic!("{typed:?}: {error}"));
                 assert!(said.ends_with(&format!("`{old}`, which is now `{new}`")), "{said}");
-                let (name, option) =
-                    if command.is_empty() { new.split_once(' ').unwrap() } else { (command, new) };
+                let (name, option) = if command.is_empty() { new.split_once(' ').unwrap() } else { (command, new) };
                 let option = option.split(' ').find(|word| word.starts_with("--")).unwrap();
                 let own = program.find_subcommand(name).unwrap();
                 assert!(own.get_arguments().any(|it| it.get_long() == Some(&option[2..])), "{name} {option}");

@@ -27,8 +27,7 @@ const TABLE: &str = "record";
 /// Settings with the place of an output.
 const OUTPUTS: [&str; 2] = ["out", "report"];
 /// Settings with file names, relative to the settings' folder.
-const FILES: [&str; 8] =
-    ["model", "measurements", "columns", "camera", "markers", "validate", "out", "report"];
+const FILES: [&str; 8] = ["model", "measurements", "columns", "camera", "markers", "validate", "out", "report"];
 /// Values of these settings that are words and no files.
 const NO_FILES: [(&str, &str); 7] = [
     ("report", "none"),
@@ -103,10 +102,10 @@ impl CompletedCommand {
         let text = |kind| error.get(kind).map(ToString::to_string);
         let value = text(ContextKind::InvalidValue);
         let all = || self.settings.entries.iter().filter(|entry| entry.key == key);
-        let is_it = |entry: &&SettingLine| matches!(&entry.value, SettingValue::One(own) if Some(own) == value.as_ref());
+        let is_it =
+            |entry: &&SettingLine| matches!(&entry.value, SettingValue::One(own) if Some(own) == value.as_ref());
         let entry = all().find(is_it).or_else(|| all().next())?;
-        let sentence = match (error.source(), text(ContextKind::InvalidValue), text(ContextKind::ValidValue))
-        {
+        let sentence = match (error.source(), text(ContextKind::InvalidValue), text(ContextKind::ValidValue)) {
             (Some(sentence), _, _) => sentence.to_string(),
             (None, Some(found), Some(expected)) => format!("found `{found}`, expected one of {expected}"),
             _ => error.kind().to_string(),
@@ -123,10 +122,8 @@ fn setting_options(command: &Command) -> impl Iterator<Item = &Arg> {
 /// True if the option was typed, or one that excludes it.
 fn is_replaced(arg: &Arg, command: &Command, matches: &ArgMatches) -> bool {
     let typed = |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine);
-    let excluded =
-        |other: &Arg| command.get_arg_conflicts_with(other).iter().any(|it| it.get_id() == arg.get_id());
-    let excludes =
-        |other: &Arg| command.get_arg_conflicts_with(arg).iter().any(|it| it.get_id() == other.get_id());
+    let excluded = |other: &Arg| command.get_arg_conflicts_with(other).iter().any(|it| it.get_id() == arg.get_id());
+    let excludes = |other: &Arg| command.get_arg_conflicts_with(arg).iter().any(|it| it.get_id() == other.get_id());
     typed(arg) || setting_options(command).any(|other| typed(other) && (excluded(other) || excludes(other)))
 }
 
@@ -142,8 +139,8 @@ fn is_typed_in_table(entry: &SettingLine, matches: &ArgMatches) -> bool {
 fn values(arg: &Arg, entry: &SettingLine, settings: &Settings) -> Result<Vec<OsString>> {
     let key = entry.key.as_str();
     let is_switch = matches!(arg.get_action(), ArgAction::SetTrue);
-    let takes_many = matches!(arg.get_action(), ArgAction::Append)
-        || arg.get_num_args().is_some_and(|range| range.max_values() > 1);
+    let takes_many =
+        matches!(arg.get_action(), ArgAction::Append) || arg.get_num_args().is_some_and(|range| range.max_values() > 1);
     let texts = match &entry.value {
         SettingValue::Switch(on) if is_switch => {
             // Settings may come from elsewhere, with a model: they may replace results, but nothing else.
@@ -172,9 +169,8 @@ fn values(arg: &Arg, entry: &SettingLine, settings: &Settings) -> Result<Vec<OsS
         return Err(settings.error(entry, message));
     }
     let word = |text: &String| {
-        let is_word = |(of, word): &(&str, &str)| {
-            *of == key && (text == word || word.ends_with(':') && text.starts_with(word))
-        };
+        let is_word =
+            |(of, word): &(&str, &str)| *of == key && (text == word || word.ends_with(':') && text.starts_with(word));
         let is_file = FILES.contains(&key) && !NO_FILES.iter().any(is_word);
         let value = if is_file { folder.join(text).into_os_string() } else { OsString::from(text) };
         if arg.is_positional() {
@@ -207,12 +203,7 @@ fn not_an_option(name: OsString) -> OsString {
 }
 
 /// Inserts options behind the command, before any `--`, and files at the end.
-fn insert_options(
-    typed: &[OsString],
-    command: &str,
-    options: Vec<OsString>,
-    files: Vec<OsString>,
-) -> Vec<OsString> {
+fn insert_options(typed: &[OsString], command: &str, options: Vec<OsString>, files: Vec<OsString>) -> Vec<OsString> {
     let at = typed.iter().position(|word| word == command).map_or(typed.len(), |index| index + 1);
     let (before, after) = typed.split_at(at);
     [before.to_vec(), options, after.to_vec(), files].concat()
@@ -228,13 +219,11 @@ mod tests {
     fn the_documented_settings_are_the_options() {
         let document = include_str!("../../../docs/file-formats.md");
         let section = document.split("\n## Settings\n").nth(1).unwrap().split("\n## ").next().unwrap();
-        let names =
-            section.lines().filter(|line| line.starts_with("| `")).filter_map(|line| line.split('|').nth(1));
+        let names = section.lines().filter(|line| line.starts_with("| `")).filter_map(|line| line.split('|').nth(1));
         let documented: BTreeSet<&str> = names.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
         let whole = command_line();
-        let mut expected: BTreeSet<&str> = setting_options(whole.find_subcommand(COMMAND).unwrap())
-            .map(|arg| arg.get_id().as_str())
-            .collect();
+        let mut expected: BTreeSet<&str> =
+            setting_options(whole.find_subcommand(COMMAND).unwrap()).map(|arg| arg.get_id().as_str()).collect();
         expected.insert("poecal_settings = 1");
         assert_eq!(documented, expected);
         let example = section.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();

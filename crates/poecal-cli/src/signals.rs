@@ -25,8 +25,7 @@ pub(crate) fn clean_up_on_signals() {
         // Signals ignored from the start, as by `nohup` or a shell's `&`, stay ignored. Only Linux reports them; elsewhere usually only
         // SIGHUP is ignored.
         let ignored = ignored_signals();
-        let all =
-            if cfg!(target_os = "linux") { &[SIGINT, SIGTERM, SIGHUP][..] } else { &[SIGINT, SIGTERM][..] };
+        let all = if cfg!(target_os = "linux") { &[SIGINT, SIGTERM, SIGHUP][..] } else { &[SIGINT, SIGTERM][..] };
         let heeded = all.iter().filter(|signal| ignored & (1 << (*signal - 1)) == 0);
         let Ok(mut signals) = Signals::new(heeded) else { return };
         drop(installed);

@@ -112,8 +112,7 @@ fn painted_line(line: &str) -> String {
     let gap = rest.len() - rest.trim_start().len();
     let (gap, rest) = rest.split_at(gap);
     let mut verdicts = VERDICTS.iter().filter(|_| label == "verdict");
-    let found =
-        verdicts.find_map(|(level, style)| Some((level.words(), style, rest.strip_prefix(level.words())?)));
+    let found = verdicts.find_map(|(level, style)| Some((level.words(), style, rest.strip_prefix(level.words())?)));
     let rest = match found {
         Some((words, style, rest)) => format!("{style}{words}{style:#}{rest}"),
         None => rest.to_owned(),
@@ -153,10 +152,7 @@ mod tests {
         let report = "noise         0.05 mm each component, from the fit\nposition, mm                  nominal    registered    calibrated\n  mean 1\n";
         let narrow = narrow_report(report, 40);
         let paragraph = "noise         0.05 mm each component,\n              from the fit\n";
-        assert_eq!(
-            narrow,
-            report.replacen("noise         0.05 mm each component, from the fit\n", paragraph, 1)
-        );
+        assert_eq!(narrow, report.replacen("noise         0.05 mm each component, from the fit\n", paragraph, 1));
         assert_eq!(narrow_report(report, 80), report);
     }
 
@@ -164,10 +160,7 @@ mod tests {
     fn lines_break_at_blanks_only() {
         assert_eq!(wrap_message("ab cd efghijkl m", 4, 10), "ab cd\n  efghijkl\n  m");
         let text = label_paragraph("written", &format!("folder\n{}", ["figure.svg"; 9].join(", ")));
-        assert!(
-            text.starts_with("written       folder\n              figure.svg, ")
-                && text.ends_with("figure.svg\n")
-        );
+        assert!(text.starts_with("written       folder\n              figure.svg, ") && text.ends_with("figure.svg\n"));
         assert!(text.lines().all(|line| line.len() <= 80), "{text}");
     }
 }

@@ -67,7 +67,8 @@ pub(crate) fn need_clocks() -> Result<()> {
     if cfg!(any(unix, windows)) {
         return Ok(());
     }
-    ErrorKind::Option.refuse("found --timings where the program has no clock, expected to run on an operating system: leave it out")
+    ErrorKind::Option
+        .refuse("found --timings where the program has no clock, expected to run on an operating system: leave it out")
 }
 
 /// Times of consecutive parts.

@@ -12,11 +12,7 @@ const COMMANDS: [(&str, &str, &str); 11] = [
     ("report", "it writes a page", "use the calibration.json that it shows"),
     ("export", "it writes a model in the form of --format", "use `--format poe` for JSON"),
     ("predict", "it prints a table of poses", "use the table, or `predict` in Python"),
-    (
-        "fleet",
-        "it writes a folder for each robot",
-        "use the ledger fleet.jsonl, a line of JSON for each robot",
-    ),
+    ("fleet", "it writes a folder for each robot", "use the ledger fleet.jsonl, a line of JSON for each robot"),
     ("reproduce", "it prints the tables of a paper", "use `reproduce` in Python, whose result has `to_json`"),
     ("schema", "it prints JSON in any case", "leave --json away"),
     ("completions", "it prints a script of the shell", "leave --json away"),
@@ -25,16 +21,16 @@ const COMMANDS: [(&str, &str, &str); 11] = [
 
 /// The sentence for `--json` of a command without that option.
 pub(crate) fn sentence(typed: &[OsString], error: &clap::Error) -> Option<String> {
-    let is_json = matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(argument)) if argument == "--json");
+    let is_json =
+        matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(argument)) if argument == "--json");
     if error.kind() != ErrorKind::UnknownArgument || !is_json {
         return None;
     }
     // The first word that is a command is the command.
     let mut words = typed.iter().skip(1).filter_map(|word| word.to_str());
     let found = words.find_map(|word| COMMANDS.iter().find(|(command, ..)| word == *command));
-    found.map(|(command, output, instead)| {
-        format!("found --json, but `poecal {command}` has none: {output}; {instead}")
-    })
+    found
+        .map(|(command, output, instead)| format!("found --json, but `poecal {command}` has none: {output}; {instead}"))
 }
 
 #[cfg(test)]
@@ -54,8 +50,7 @@ mod tests {
 
     #[test]
     fn json_of_a_command_without_it_is_answered_in_one_sentence() {
-        let typed: Vec<OsString> =
-            ["poecal", "--quiet", "predict", "--json", "a", "b"].map(OsString::from).into();
+        let typed: Vec<OsString> = ["poecal", "--quiet", "predict", "--json", "a", "b"].map(OsString::from).into();
         let error = command_line().try_get_matches_from(&typed).unwrap_err();
         let expected = "found --json, but `poecal predict` has none: it prints a table of poses; use the table, or `predict` in Python";
         assert_eq!(sentence(&typed, &error).as_deref(), Some(expected));

@@ -68,11 +68,7 @@ pub const DEVICE: WordList<bool> = &[
 /// State of the tool: unchanged or mounted anew.
 pub const TOOL: WordList<bool> = &[
     ("same", "It stayed on the flange, or was mounted on pins", false),
-    (
-        "refit",
-        "It was mounted anew: its targets are fitted, and a shift of the last joint does not show",
-        true,
-    ),
+    ("refit", "It was mounted anew: its targets are fitted, and a shift of the last joint does not show", true),
 ];
 
 /// Sets of rows that share a device frame.
@@ -84,11 +80,7 @@ pub const FRAMES: WordList<FrameGrouping> = &[
 /// Methods of joining two files.
 pub const JOIN: WordList<Join> = &[
     ("name", "By the names of their rows (`id`), or the numbers at the end of these", Join::Name),
-    (
-        "rows",
-        "By their order; where their numbers differ, by what the nominal robot misses by least",
-        Join::Rows,
-    ),
+    ("rows", "By their order; where their numbers differ, by what the nominal robot misses by least", Join::Rows),
     ("time", "By the times of their stands, each file with a clock of its own", Join::Time),
     (
         "motion",
@@ -111,11 +103,7 @@ pub const CONTACT: WordList<PlaneContact> = &[
 
 /// Parameterisations of the joints' errors.
 pub const FORMULATION: WordList<PaperFormulation> = &[
-    (
-        "adjoint",
-        "Axes move as rigid bodies, without offsets: minimal, unconstrained",
-        PaperFormulation::Adjoint,
-    ),
+    ("adjoint", "Axes move as rigid bodies, without offsets: minimal, unconstrained", PaperFormulation::Adjoint),
     ("screw", "Screws are free numbers, normalised after every step", PaperFormulation::Screw),
     ("screw-offsets", "Free screws and joint offsets, 7n + 6 unknowns", PaperFormulation::ScrewOffsets),
     ("adjoint-offsets", "Axes as rigid bodies, and joint offsets", PaperFormulation::AdjointOffsets),
@@ -135,11 +123,7 @@ pub const METHOD: WordList<Method> = &[
 
 /// Treatments of outliers.
 pub const ROBUST: WordList<RobustLoss> = &[
-    (
-        "auto",
-        "Least squares, unless outliers are evident: then the tukey loss, and a warning",
-        RobustLoss::Auto,
-    ),
+    ("auto", "Least squares, unless outliers are evident: then the tukey loss, and a warning", RobustLoss::Auto),
     ("off", "Least squares: every row counts in full", RobustLoss::Off),
     ("huber", "The influence of a residual is bounded", RobustLoss::Loss(Loss::Huber)),
     ("cauchy", "The influence of a large residual decreases with its size", RobustLoss::Loss(Loss::Cauchy)),
@@ -256,10 +240,7 @@ const EXPORT_FORMAT: WordList<ExportForm> = &[
     public_form(ExportFormat::Usd, "USD physics, as Isaac Sim reads it"),
     public_form(ExportFormat::Csv, "Origins of the joints, a row each"),
     public_form(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
-    public_form(
-        ExportFormat::Tf,
-        "What was located, camera or tool and board or device: ROS 2, URDF, quaternions",
-    ),
+    public_form(ExportFormat::Tf, "What was located, camera or tool and board or device: ROS 2, URDF, quaternions"),
     public_form(ExportFormat::C, "Arrays of C for kinematics on a controller, with what joints do"),
     private_form("kuka", "KUKA's absolute accuracy is a file on the robot's own memory"),
     private_form("fanuc", "FANUC's geometry is closed, and mastering needs counts of encoders"),
@@ -295,8 +276,7 @@ fn kinds(some: Vec<SessionKind>) -> impl TypedValueParser<Value = SessionKind> {
     };
     let values: Vec<PossibleValue> = some.iter().map(value).collect();
     PossibleValuesParser::new(values).try_map(move |chosen| {
-        let is_it =
-            |kind: &&SessionKind| kind.word() == chosen || kind.session().plural == Some(chosen.as_str());
+        let is_it = |kind: &&SessionKind| kind.word() == chosen || kind.session().plural == Some(chosen.as_str());
         some.iter().find(is_it).copied().ok_or("expected one of the words")
     })
 }
@@ -362,8 +342,6 @@ pub const SELF_COLLISION: WordList<bool> = &[
 ];
 
 /// Parser of one of these words for clap.
-pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
-    words: WordList<T>,
-) -> impl TypedValueParser<Value = T> {
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(words: WordList<T>) -> impl TypedValueParser<Value = T> {
     parser_of_words(words.to_vec())
 }

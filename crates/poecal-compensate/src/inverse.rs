@@ -44,10 +44,7 @@ impl Inverse {
         if within_limits && !self.is_within(&q) {
             if let Ok(start) = <&[f64; 7]>::try_from(&start[..]) {
                 q.copy_from_slice(
-                    &self
-                        .arm
-                        .branches_with_held(self.arm.best_held_joint()?)?
-                        .nearest_within_limits(target, start)?,
+                    &self.arm.branches_with_held(self.arm.best_held_joint()?)?.nearest_within_limits(target, start)?,
                 );
             } else {
                 let start: [f64; 6] = start[..].try_into().ok()?;
@@ -64,8 +61,7 @@ impl Inverse {
         let Some(branches) = self.arm.branches() else { return Vec::new() };
         let mut start = [0.0; 6];
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
-        let found =
-            if within_limits { branches.within_limits(target, &start) } else { branches.branches_at(target) };
+        let found = if within_limits { branches.within_limits(target, &start) } else { branches.branches_at(target) };
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 
@@ -92,21 +88,14 @@ impl Inverse {
         };
         let mut start = [0.0; 7];
         start.iter_mut().zip(&self.readings).for_each(|(to, &at)| *to = near.get(at).copied().unwrap_or(0.0));
-        let found = if within_limits {
-            held.within_limits(target, value, &start)
-        } else {
-            held.branches_at(target, value)
-        };
+        let found =
+            if within_limits { held.within_limits(target, value, &start) } else { held.branches_at(target, value) };
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 
     /// Results of `find` for each of many poses, whose index it receives too, by all threads, in their order.
     #[must_use]
-    pub fn of_many<T: Send>(
-        &self,
-        targets: &[Pose],
-        find: impl Fn(&Self, usize, &Pose) -> T + Sync + Send,
-    ) -> Vec<T> {
+    pub fn of_many<T: Send>(&self, targets: &[Pose], find: impl Fn(&Self, usize, &Pose) -> T + Sync + Send) -> Vec<T> {
         concat_chunks(targets, SOME, |index, some| {
             let each = some.iter().enumerate();
             each.map(|(row, target)| find(self, index * SOME + row, target)).collect()
@@ -145,8 +134,7 @@ mod tests {
         let inverse = Inverse::new(&robot, &[]).unwrap();
         let configurations = [[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], [0.3; 6], [0.4; 6]];
         let targets = configurations.map(|q| robot.forward_kinematics(&q));
-        let found =
-            inverse.of_many(&targets, |inverse, _, target| inverse.solve_nearest(target, &[0.2; 6], true));
+        let found = inverse.of_many(&targets, |inverse, _, target| inverse.solve_nearest(target, &[0.2; 6], true));
         assert_eq!(found.len(), 3);
         for (q, found) in configurations.iter().zip(found) {
             assert!(q.iter().zip(found.unwrap()).all(|(q, found)| (q - found).abs() < 1e-9));

@@ -114,8 +114,7 @@ impl Compensation {
         let (actual_arm, readings) = actual.arm_holding(factors, held)?;
         let names = actual.joint_reading_names();
         let corrections = ReadingCorrections::new(&nominal_arm, &actual_arm, options.most_change);
-        let Some(corrections) =
-            corrections.filter(|_| names == nominal.joint_reading_names() && own == readings)
+        let Some(corrections) = corrections.filter(|_| names == nominal.joint_reading_names() && own == readings)
         else {
             return ErrorKind::Model
                 .refuse("the nominal robot has other joints than the actual one, expected the same");
@@ -171,11 +170,7 @@ impl Compensation {
     #[must_use]
     pub fn is_beyond_limits(&self, readings: &[f64]) -> bool {
         let of = |&at: &usize| readings.get(at).copied().unwrap_or(0.0);
-        self.readings
-            .iter()
-            .map(of)
-            .zip(self.actual_arm().limits())
-            .any(|(it, &(low, high))| it < low || it > high)
+        self.readings.iter().map(of).zip(self.actual_arm().limits()).any(|(it, &(low, high))| it < low || it > high)
     }
 
     /// Readings of the actual robot for readings of the nominal one (rad, m). Readings that do not move the tip are unchanged, and so are all of a
@@ -195,8 +190,7 @@ impl Compensation {
         let uncorrected = self.actual_arm().forward_kinematics(&self.meant);
         let (moved_m, turned_rad) = uncorrected.distance_and_angle(&target);
         if moved_m == 0.0 && turned_rad == 0.0 {
-            let nothing =
-                CorrectionResidual { outcome: CorrectionOutcome::Reached, left_m: 0.0, left_rad: 0.0 };
+            let nothing = CorrectionResidual { outcome: CorrectionOutcome::Reached, left_m: 0.0, left_rad: 0.0 };
             return self.compensated((moved_m, turned_rad), nothing);
         }
         // Along a path, changes vary evenly.
@@ -236,9 +230,8 @@ impl Compensation {
     /// The largest change of a joint beyond its zero, relative to the limit.
     #[must_use]
     pub fn share_of_most(&self, meant: &[f64], commanded: &[f64]) -> f64 {
-        let own = |all: &[f64]| -> Vec<f64> {
-            self.readings.iter().map(|&at| all.get(at).copied().unwrap_or(0.0)).collect()
-        };
+        let own =
+            |all: &[f64]| -> Vec<f64> { self.readings.iter().map(|&at| all.get(at).copied().unwrap_or(0.0)).collect() };
         self.corrections.share_of_most(&own(meant), &own(commanded))
     }
 
@@ -250,7 +243,9 @@ impl Compensation {
                 let at = self.readings.get(joint).copied().unwrap_or(joint);
                 let slides = self.actual_arm().screws().get(joint).is_some_and(|it| it.is_prismatic());
                 let most = self.corrections.max_correction();
-                let in_words = |it: f64| if slides { format!("{:.3} mm", it * 1e3) } else { format!("{:.3} deg", it.to_degrees()) };
+                let in_words = |it: f64| {
+                    if slides { format!("{:.3} mm", it * 1e3) } else { format!("{:.3} deg", it.to_degrees()) }
+                };
                 let most = if slides { most.sliding_m } else { most.turning_rad };
                 format!(
                     "joint `{}` would have to move by {} beyond its zero, where {} are allowed: a singularity is near, or the \

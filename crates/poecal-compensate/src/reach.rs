@@ -55,10 +55,7 @@ impl Reach {
             *six = start;
             return branches.solve_nearest(target, six);
         }
-        match (
-            <&mut [f64; 7]>::try_from(q),
-            self.best_held_joint().and_then(|it| self.branches_with_held(it)),
-        ) {
+        match (<&mut [f64; 7]>::try_from(q), self.best_held_joint().and_then(|it| self.branches_with_held(it))) {
             (Ok(seven), Some(held)) => held.solve_nearest(target, seven),
             (Err(_), _) | (_, None) => left,
         }

@@ -133,11 +133,7 @@ impl CompensationSummary {
 
     /// Summary of rows without lines.
     pub(crate) fn of_rows(compensation: &Compensation, each: bool) -> Self {
-        CompensationSummary {
-            place: "row",
-            targets: each.then(Vec::new),
-            ..CompensationSummary::new(compensation)
-        }
+        CompensationSummary { place: "row", targets: each.then(Vec::new), ..CompensationSummary::new(compensation) }
     }
 
     /// Mean distance of the tip from its intended position without correction, metres.
@@ -152,8 +148,7 @@ impl CompensationSummary {
         let is_first = self.rows == 0;
         self.last.resize(self.largest.len(), 0.0);
         self.last_meant.resize(self.largest.len(), 0.0);
-        let mut most =
-            CorrectedTarget { line, joint: 0, change: 0.0, left_m: found.left_m, left_rad: found.left_rad };
+        let mut most = CorrectedTarget { line, joint: 0, change: 0.0, left_m: found.left_m, left_rad: found.left_rad };
         for (index, (to, from)) in found.readings.iter().zip(meant).take(self.largest.len()).enumerate() {
             let change = to - from;
             if change.abs() > most.change {
@@ -172,9 +167,7 @@ impl CompensationSummary {
         }
         for &(index, low, high) in &self.limits {
             let Some(&value) = found.readings.get(index) else { continue };
-            if (value < low || value > high)
-                && count(&mut self.beyond_limits.0, &mut self.beyond_limits.1, line)
-            {
+            if (value < low || value > high) && count(&mut self.beyond_limits.0, &mut self.beyond_limits.1, line) {
                 self.beyond_limits.2 = self.joints.get(index).cloned().unwrap_or_default();
             }
         }
@@ -378,8 +371,7 @@ mod tests {
     #[test]
     fn rows_are_counted() {
         let robot = poecal_testing::sessions::unlimited_elbow();
-        let mut compensation =
-            Compensation::new(&robot, &robot, &[], &super::super::ChangeOptions::default()).unwrap();
+        let mut compensation = Compensation::new(&robot, &robot, &[], &super::super::ChangeOptions::default()).unwrap();
         let mut summary = CompensationSummary::new(&compensation);
         let meant = [0.1; 6];
         summary.include(2, &meant, &compensation.joints(&meant));

@@ -57,9 +57,8 @@ pub fn compensate_table(
             with_factors.clear();
             with_factors.extend_from_slice(numbers);
             with_factors.extend_from_slice(factors);
-            let left = actual
-                .forward_kinematics(&with_factors)
-                .distance_and_angle(&nominal.forward_kinematics(row.readings));
+            let left =
+                actual.forward_kinematics(&with_factors).distance_and_angle(&nominal.forward_kinematics(row.readings));
             checked.include(left, row.line);
             checked.change.include(compensation.share_of_most(row.readings, numbers), row.line);
         }

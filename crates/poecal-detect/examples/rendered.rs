@@ -152,9 +152,7 @@ impl RenderTally {
             let error = off.norm();
             if error > 1.0 {
                 let (id, sigma, visible) = (corner.id, corner.sigma_px, truth.visible);
-                eprintln!(
-                    "picture {number}: corner {id} off by {error:.2} px, sigma {sigma:.2}, visible: {visible}"
-                );
+                eprintln!("picture {number}: corner {id} off by {error:.2} px, sigma {sigma:.2}, visible: {visible}");
                 self.far += 1;
                 continue;
             }
@@ -203,20 +201,12 @@ fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: RenderTal
 }
 
 /// Pictures without the board, every fifth with another one.
-fn false_corners(
-    out: &mut impl Write,
-    pictures: usize,
-    kind: &str,
-) -> Result<(), Box<dyn std::error::Error>> {
+fn false_corners(out: &mut impl Write, pictures: usize, kind: &str) -> Result<(), Box<dyn std::error::Error>> {
     let sought: Vec<&str> = SOUGHT.into_iter().filter(|it| it.starts_with(kind)).collect();
-    let detectors: Vec<Detector> = sought
-        .iter()
-        .map(|spec| Ok(Detector::new(&spec.parse()?)))
-        .collect::<Result<_, poecal_detect::Error>>()?;
-    let others: Vec<BoardLayout> = OTHERS
-        .iter()
-        .map(|spec| Ok(BoardLayout::new(&spec.parse()?)))
-        .collect::<Result<_, poecal_detect::Error>>()?;
+    let detectors: Vec<Detector> =
+        sought.iter().map(|spec| Ok(Detector::new(&spec.parse()?))).collect::<Result<_, poecal_detect::Error>>()?;
+    let others: Vec<BoardLayout> =
+        OTHERS.iter().map(|spec| Ok(BoardLayout::new(&spec.parse()?))).collect::<Result<_, poecal_detect::Error>>()?;
     let picture = |number: usize| -> (Gray, Option<&str>) {
         if number % 5 == 4 {
             let other = number / 5 % others.len();
@@ -260,11 +250,7 @@ fn keep(folder: &Path, drawn: &[(usize, DrawnScene)]) -> Result<(), Box<dyn std:
         fs::write(path, png(gray)?)?;
         for corner in &it.truth {
             let (place, visible) = (corner.place_px, u8::from(corner.visible));
-            writeln!(
-                truth,
-                "{number},{},{:.5},{:.5},{visible},{:.1}",
-                corner.id, place.x, place.y, it.tilt_deg
-            )?;
+            writeln!(truth, "{number},{},{:.5},{:.5},{visible},{:.1}", corner.id, place.x, place.y, it.tilt_deg)?;
         }
     }
     Ok(())

@@ -33,9 +33,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         least_s += own_s;
     }
     let (count, per_picture_ms) = (pictures.len(), 1e3 * least_s / pictures.len().max(1) as f64);
-    println!(
-        "{per_picture_ms:.2} ms, {found} of {count} pictures, {corners} corners, {:016x}",
-        hasher.finish()
-    );
+    println!("{per_picture_ms:.2} ms, {found} of {count} pictures, {corners} corners, {:016x}", hasher.finish());
     Ok(())
 }

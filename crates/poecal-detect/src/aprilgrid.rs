@@ -43,18 +43,12 @@ pub(crate) fn of_quads(
 ) -> Result<DetectedBoard, RejectionReason> {
     let BoardPattern::Tags(tags) = &layout.pattern else { return Err(RejectionReason::NoBoard) };
     let read = quads.iter().filter_map(|quad| reader.read(gray, quad));
-    let turned = |it: DetectedMarker| DetectedMarker {
-        corners: [0, 1, 2, 3].map(|k| it.corners[(k + TURNS) % 4]),
-        ..it
-    };
+    let turned =
+        |it: DetectedMarker| DetectedMarker { corners: [0, 1, 2, 3].map(|k| it.corners[(k + TURNS) % 4]), ..it };
     let markers: Vec<DetectedMarker> = read.map(turned).collect();
     let (_, agreeing) = consensus(layout, &markers).ok_or(RejectionReason::NoBoard)?;
     if agreeing.len() < LEAST || agreeing.len() * 2 < markers.len() {
-        return Err(if markers.len() > 2 {
-            RejectionReason::Other
-        } else {
-            RejectionReason::Few(4 * agreeing.len())
-        });
+        return Err(if markers.len() > 2 { RejectionReason::Other } else { RejectionReason::Few(4 * agreeing.len()) });
     }
     let corner = |id: usize, place: Vector2<f64>, weight: f64| (layout.corner(id), place, weight);
     let anchors: Vec<PointPair> = agreeing
@@ -71,8 +65,7 @@ pub(crate) fn of_quads(
             if found.contains_key(&id) {
                 continue;
             }
-            let saddle =
-                predict_corner(gray, layout, tags, &pairs, id).and_then(|it| refine(gray, &it, noise));
+            let saddle = predict_corner(gray, layout, tags, &pairs, id).and_then(|it| refine(gray, &it, noise));
             found.extend(saddle.map(|it| (id, it)));
         }
         prune(layout, &mut found, |it| it.place, OFF);

@@ -21,13 +21,7 @@ const PAPER: f64 = 0.8;
 const BEYOND: usize = 1;
 
 /// True if dots are all of a board with bare surroundings.
-pub(crate) fn is_whole(
-    gray: &Gray,
-    layout: &BoardLayout,
-    noise: f64,
-    named: &NumberedDots,
-    radius: f64,
-) -> bool {
+pub(crate) fn is_whole(gray: &Gray, layout: &BoardLayout, noise: f64, named: &NumberedDots, radius: f64) -> bool {
     has_outline(layout, named)
         && has_paper(gray, layout, named)
         && !has_gaps(gray, layout, named)
@@ -104,9 +98,8 @@ fn goes_on(gray: &Gray, layout: &BoardLayout, noise: f64, named: &NumberedDots, 
     let has_dot = |[x, y]: [i32; 2]| !layout.is_asymmetric() || (x + y) % 2 == 0;
     let places = (0..=rows + 1).flat_map(|y| (0..=columns + 1).map(move |x| [x, y]));
     let beyond = places.filter(|it| is_beyond(*it) && has_dot(*it));
-    let there = |[x, y]: [i32; 2]| {
-        dot_at(gray, noise, &all, Vector2::new(f64::from(x), f64::from(y)), radius).is_some()
-    };
+    let there =
+        |[x, y]: [i32; 2]| dot_at(gray, noise, &all, Vector2::new(f64::from(x), f64::from(y)), radius).is_some();
     beyond.filter(|it| there(*it)).count() > BEYOND
 }
 

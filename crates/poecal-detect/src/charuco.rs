@@ -66,12 +66,7 @@ pub(crate) fn of_quads(
 }
 
 /// Markers in the light squares of a grid.
-fn markers_of_grid(
-    gray: &Gray,
-    layout: &BoardLayout,
-    reader: &MarkerReader,
-    grid: &CornerGrid,
-) -> Vec<DetectedMarker> {
+fn markers_of_grid(gray: &Gray, layout: &BoardLayout, reader: &MarkerReader, grid: &CornerGrid) -> Vec<DetectedMarker> {
     let side = layout.markers.as_ref().map_or(0.5, |it| it.1);
     let at = |node: GridCorner| grid.iter().find(|it| it.0 == node).map(|it| it.1);
     let cell = |node: &GridCorner| -> Option<DetectedMarker> {
@@ -147,10 +142,7 @@ fn nodes_of(layout: &BoardLayout) -> Vec<GridCorner> {
 }
 
 /// The markers, by their indices in the list, that one map of the board explains, and the map: from a pair of them, or from the only one.
-pub(crate) fn consensus(
-    layout: &BoardLayout,
-    markers: &[DetectedMarker],
-) -> Option<(Homography, Vec<usize>)> {
+pub(crate) fn consensus(layout: &BoardLayout, markers: &[DetectedMarker]) -> Option<(Homography, Vec<usize>)> {
     let known: Vec<(usize, [Vector2<f64>; 4], Quad)> = markers
         .iter()
         .enumerate()
@@ -163,14 +155,11 @@ pub(crate) fn consensus(
     let step = (count * count / 800).max(1);
     let pairs = (0..count).flat_map(|a| (a..count).map(move |b| (a, b))).filter(|(a, b)| a != b || count < 3);
     for (a, b) in pairs.step_by(step) {
-        let pairs: Vec<PointPair> = [a, b]
-            .iter()
-            .flat_map(|at| known[*at].1.into_iter().zip(known[*at].2).map(|(p, q)| (p, q, 1.0)))
-            .collect();
+        let pairs: Vec<PointPair> =
+            [a, b].iter().flat_map(|at| known[*at].1.into_iter().zip(known[*at].2).map(|(p, q)| (p, q, 1.0))).collect();
         let Some(map) = Homography::fit(&pairs) else { continue };
         let near = (known[a].1[0] + known[b].1[0]) * 0.5;
-        let agreeing: Vec<usize> =
-            known.iter().filter(|it| agrees(&map, &it.1, &it.2, near)).map(|it| it.0).collect();
+        let agreeing: Vec<usize> = known.iter().filter(|it| agrees(&map, &it.1, &it.2, near)).map(|it| it.0).collect();
         if !agreeing.is_empty() && best.as_ref().is_none_or(|it| it.1.len() < agreeing.len()) {
             best = Some((map, agreeing));
         }
@@ -189,12 +178,7 @@ fn agrees(map: &Homography, corners: &[Vector2<f64>; 4], seen: &Quad, near: Vect
 }
 
 /// Number of disagreeing markers that are far from the board: they do not contradict it.
-fn strangers_outside(
-    layout: &BoardLayout,
-    map: &Homography,
-    markers: &[DetectedMarker],
-    agreeing: &[usize],
-) -> usize {
+fn strangers_outside(layout: &BoardLayout, map: &Homography, markers: &[DetectedMarker], agreeing: &[usize]) -> usize {
     let [columns, rows] = layout.squares.map(|it| it as f64);
     let around = [[-1.0, -1.0], [columns + 1.0, -1.0], [columns + 1.0, rows + 1.0], [-1.0, rows + 1.0]];
     let outline: Vec<Vector2<f64>> = around.iter().filter_map(|it| map.map(Vector2::from(*it))).collect();
@@ -216,12 +200,7 @@ struct MarkerRecheck {
     unread: usize,
 }
 
-fn read_again(
-    gray: &Gray,
-    layout: &BoardLayout,
-    reader: &MarkerReader,
-    growth: &BoardGrowth<'_>,
-) -> MarkerRecheck {
+fn read_again(gray: &Gray, layout: &BoardLayout, reader: &MarkerReader, growth: &BoardGrowth<'_>) -> MarkerRecheck {
     let mut again = MarkerRecheck { right: 0, wrong: 0, unread: 0 };
     for id in 0..layout.marker_count() {
         let Some(quad) = predict_marker(layout, growth, id) else { continue };
@@ -229,9 +208,7 @@ fn read_again(
             continue;
         }
         match reader.read(gray, &quad) {
-            Some(marker) if marker.id == id && (marker.corners[0] - quad[0]).norm() < 1e-9 => {
-                again.right += 1
-            }
+            Some(marker) if marker.id == id && (marker.corners[0] - quad[0]).norm() < 1e-9 => again.right += 1,
             Some(_) => again.wrong += 1,
             None => again.unread += 1,
         }

@@ -12,11 +12,7 @@ const LEAST: usize = 6;
 const GRIDS: usize = 6;
 
 /// Finds a chessboard whose corners reach over all its columns and rows.
-pub(crate) fn detect(
-    gray: &Gray,
-    layout: &BoardLayout,
-    noise: f64,
-) -> Result<DetectedBoard, RejectionReason> {
+pub(crate) fn detect(gray: &Gray, layout: &BoardLayout, noise: f64) -> Result<DetectedBoard, RejectionReason> {
     let mut most = 0;
     let mut reason = RejectionReason::NoBoard;
     let of_scale = |blur_px: &f64| grids(gray, noise, *blur_px).into_iter();
@@ -39,12 +35,7 @@ pub(crate) fn detect(
 }
 
 /// All corners around a grid, up to one more than the board has on each side.
-fn grow_from_grid<'a>(
-    gray: &'a Gray,
-    layout: &BoardLayout,
-    noise: f64,
-    grid: &CornerGrid,
-) -> Option<BoardGrowth<'a>> {
+fn grow_from_grid<'a>(gray: &'a Gray, layout: &BoardLayout, noise: f64, grid: &CornerGrid) -> Option<BoardGrowth<'a>> {
     let seeded = |first_dark: bool| {
         let mut growth = BoardGrowth::new(gray, noise, layout.plain_reach(), first_dark);
         for (node, place) in grid {

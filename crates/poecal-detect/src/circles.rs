@@ -175,13 +175,11 @@ fn name_dots(
     for turn in 0..4 {
         match number_dots(layout, dots, lattice, turn) {
             Ok(named) => {
-                let first = map_near(&pairs(layout, &named), layout.corner(0))
-                    .and_then(|it| it.0.map(layout.corner(0)));
+                let first =
+                    map_near(&pairs(layout, &named), layout.corner(0)).and_then(|it| it.0.map(layout.corner(0)));
                 fitting.push((first.map_or(f64::INFINITY, |it| it.x + it.y), named));
             }
-            Err(other) if matches!(reason, RejectionReason::NoBoard | RejectionReason::Few(_)) => {
-                reason = other
-            }
+            Err(other) if matches!(reason, RejectionReason::NoBoard | RejectionReason::Few(_)) => reason = other,
             Err(_) => {}
         }
     }

@@ -122,13 +122,7 @@ pub(crate) fn board_from_growth(
         .iter()
         .filter_map(|(node, saddle)| {
             let (u_px, v_px) = (saddle.place.x, saddle.place.y);
-            Some(DetectedCorner {
-                id: id(*node)?,
-                kind: PointKind::Corner,
-                u_px,
-                v_px,
-                sigma_px: saddle.sigma_px,
-            })
+            Some(DetectedCorner { id: id(*node)?, kind: PointKind::Corner, u_px, v_px, sigma_px: saddle.sigma_px })
         })
         .collect();
     corners.sort_by_key(|it| it.id);

@@ -34,9 +34,7 @@ impl Detector {
             BoardSpec::Charuco(Charuco { dictionary, .. }) | BoardSpec::Tags(Tags { dictionary, .. }) => {
                 Some(MarkerReader::new(dictionary))
             }
-            BoardSpec::AprilGrid(AprilGrid { dictionary, .. }) => {
-                Some(MarkerReader::with_border(dictionary, 2))
-            }
+            BoardSpec::AprilGrid(AprilGrid { dictionary, .. }) => Some(MarkerReader::with_border(dictionary, 2)),
             BoardSpec::Chessboard(_) | BoardSpec::Circles(_) => None,
         };
         Detector { spec: spec.clone(), layout, reader, most_dots: MOST_DOTS }
@@ -68,9 +66,7 @@ impl Detector {
         let noise = noise(gray);
         let found = match (&self.spec, &self.reader) {
             (BoardSpec::Charuco(_), Some(reader)) => charuco::detect(gray, &self.layout, reader, noise),
-            (BoardSpec::Tags(Tags { dictionary, .. }), Some(reader)) => {
-                tags::detect(gray, dictionary, reader, noise)
-            }
+            (BoardSpec::Tags(Tags { dictionary, .. }), Some(reader)) => tags::detect(gray, dictionary, reader, noise),
             (BoardSpec::AprilGrid(_), Some(reader)) => aprilgrid::detect(gray, &self.layout, reader, noise),
             (BoardSpec::Chessboard(_), _) => chessboard::detect(gray, &self.layout, noise),
             (BoardSpec::Charuco(_) | BoardSpec::Tags(_) | BoardSpec::AprilGrid(_), None) => {

@@ -112,8 +112,7 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
     let beyond = (0.6 * least).clamp(2.6, 6.0);
     let within = (0.8 * least).clamp(2.6, 9.0);
     let reach = Vector2::new(axes.row(0).norm() + beyond, axes.row(1).norm() + beyond);
-    if !gray.holds(middle - reach, 0.0) || !gray.holds(middle + reach, 0.0) || reach.x * reach.y > MOST as f64
-    {
+    if !gray.holds(middle - reach, 0.0) || !gray.holds(middle + reach, 0.0) || reach.x * reach.y > MOST as f64 {
         return None;
     }
     let mut pixels = Pixels::new(middle);

@@ -22,9 +22,7 @@ impl Gray {
     pub fn new(width: usize, height: usize, levels: Vec<f32>) -> Result<Self> {
         if width == 0 || width.checked_mul(height) != Some(levels.len()) {
             let found = levels.len();
-            return Err(Error::new(format!(
-                "found {found} levels, expected {width} × {height} of a picture"
-            )));
+            return Err(Error::new(format!("found {found} levels, expected {width} × {height} of a picture")));
         }
         if levels.iter().any(|it| !it.is_finite()) {
             return Err(Error::new("found a level that is no number, expected 0 to 255"));

@@ -167,12 +167,7 @@ fn cross_at(smooth: &Gray, [x, row]: [usize; 2], own: f32, blur_px: f64) -> Opti
         return None;
     }
     let place = Vector2::new(x as f64, row as f64) - off;
-    Some(Cross {
-        place,
-        strength: f64::from(own),
-        edges: edges(smooth, place, RING * blur_px)?,
-        next: [None; 4],
-    })
+    Some(Cross { place, strength: f64::from(own), edges: edges(smooth, place, RING * blur_px)?, next: [None; 4] })
 }
 
 /// Directions of the edges through a point: a ring around it changes between dark and light four times. Second derivatives contain them too, but
@@ -187,8 +182,8 @@ fn edges(smooth: &Gray, place: Vector2<f64>, radius_px: f64) -> Option<[Vector2<
     for (k, level) in levels.iter_mut().enumerate() {
         *level = smooth.level_at(place + direction(k as f64) * radius_px);
     }
-    let limit = 0.5
-        * (levels.iter().copied().fold(f64::INFINITY, f64::min) + levels.iter().copied().fold(0.0, f64::max));
+    let limit =
+        0.5 * (levels.iter().copied().fold(f64::INFINITY, f64::min) + levels.iter().copied().fold(0.0, f64::max));
     let mut changes = [(0.0, false); 4];
     let mut count = 0;
     for (k, level) in levels.iter().enumerate() {
@@ -259,13 +254,7 @@ impl CellIndex {
 }
 
 /// The nearest crossings along the edges of one, in the directions without a neighbour.
-fn neighbours(
-    smooth: &Gray,
-    crosses: &[Cross],
-    own: usize,
-    candidates: &[usize],
-    found: &mut [Option<usize>; 4],
-) {
+fn neighbours(smooth: &Gray, crosses: &[Cross], own: usize, candidates: &[usize], found: &mut [Option<usize>; 4]) {
     let from = &crosses[own];
     let mut near: [Vec<(f64, usize)>; 4] = Default::default();
     for at in candidates.iter().copied() {
@@ -337,18 +326,14 @@ fn grid_from(crosses: &[Cross], first: usize, free: &mut [bool]) -> CornerGrid {
             let Some(other) = other.filter(|it| free[*it]) else { continue };
             let way = crosses[own].direction(k);
             let (along, across) = (way.dot(&x), way.dot(&y));
-            let step = if along.abs() > across.abs() {
-                [along.signum() as i32, 0]
-            } else {
-                [0, across.signum() as i32]
-            };
+            let step =
+                if along.abs() > across.abs() { [along.signum() as i32, 0] } else { [0, across.signum() as i32] };
             let place = [node[0] + step[0], node[1] + step[1]];
             if taken.contains_key(&place) {
                 continue;
             }
             taken.insert(place, other);
-            frames
-                .insert(other, (place, [nearest_axis(&crosses[other], x), nearest_axis(&crosses[other], y)]));
+            frames.insert(other, (place, [nearest_axis(&crosses[other], x), nearest_axis(&crosses[other], y)]));
             free[other] = false;
             queue.push_back(other);
         }

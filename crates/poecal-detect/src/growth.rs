@@ -104,12 +104,7 @@ impl<'a> BoardGrowth<'a> {
     }
 
     /// Adds a corner near a position, with a slope of the board there.
-    pub(crate) fn seed(
-        &mut self,
-        node: GridCorner,
-        place: Vector2<f64>,
-        slope: nalgebra::Matrix2<f64>,
-    ) -> bool {
+    pub(crate) fn seed(&mut self, node: GridCorner, place: Vector2<f64>, slope: nalgebra::Matrix2<f64>) -> bool {
         let dark_before = self.dark_before(node);
         let expected = SaddlePrior { place, slope, plain: self.plain, dark_before, search_px: 2.0 };
         let found = refine(self.gray, &expected, self.noise);
@@ -134,8 +129,7 @@ impl<'a> BoardGrowth<'a> {
                 let square_px = map.slope(point)?.determinant().abs().sqrt();
                 Some((map.map(point)?, (OFF.0 + OFF.1 * square_px) * nearest.max(1.0)))
             });
-            let part =
-                predicted.map_or(f64::INFINITY, |(place, limit)| (place - saddle.place).norm() / limit);
+            let part = predicted.map_or(f64::INFINITY, |(place, limit)| (place - saddle.place).norm() / limit);
             (*node, part.max(saddle.sigma_px / (VAGUE * usual_px)))
         };
         let worst = self.nodes.iter().map(off).max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -138,8 +138,7 @@ mod tests {
 
     #[test]
     fn a_map_comes_back_from_its_points() {
-        let truth =
-            Homography { matrix: Matrix3::new(80.0, -7.0, 500.0, 12.0, 60.0, 300.0, 0.02, -0.03, 1.0) };
+        let truth = Homography { matrix: Matrix3::new(80.0, -7.0, 500.0, 12.0, 60.0, 300.0, 0.02, -0.03, 1.0) };
         let places = (0..4).flat_map(|x| (0..3).map(move |y| Vector2::new(f64::from(x), f64::from(y))));
         let pairs: Vec<PointPair> = places.map(|it| (it, truth.map(it).unwrap(), 2.0)).collect();
         let found = Homography::fit(&pairs).unwrap();
@@ -147,14 +146,10 @@ mod tests {
         let error = (found.map(at).unwrap() - truth.map(at).unwrap()).norm();
         let step = Vector2::new(1e-6, 0.0);
         let slope = (truth.map(at + step).unwrap() - truth.map(at).unwrap()) / 1e-6;
-        println!(
-            "error {error:.1e} px, slope off by {:.1e}",
-            (slope - truth.slope(at).unwrap().column(0)).norm()
-        );
+        println!("error {error:.1e} px, slope off by {:.1e}", (slope - truth.slope(at).unwrap().column(0)).norm());
         // Rounding, times the condition of eight unknowns; differences of 1e-6.
         assert!(error < 1e-8 && (slope - truth.slope(at).unwrap().column(0)).norm() < 1e-3);
-        let line: Vec<PointPair> =
-            (0..6).map(|k| (Vector2::new(f64::from(k), 0.0), Vector2::zeros(), 1.0)).collect();
+        let line: Vec<PointPair> = (0..6).map(|k| (Vector2::new(f64::from(k), 0.0), Vector2::zeros(), 1.0)).collect();
         assert!(Homography::fit(&line).is_none() && Homography::fit(&pairs[..3]).is_none());
     }
 }

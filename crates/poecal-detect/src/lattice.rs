@@ -124,9 +124,8 @@ fn join_dot(
     let Some(own) = lattice.get(&node).map(|at| dots[*at]) else { return };
     let all = (0..dots.len()).filter(|other| !taken[*other] && near(*other) < ASIDE * pitch_px);
     let limits = if step[0].abs() + step[1].abs() > 1 { ALIKE_FAR } else { ALIKE };
-    let best = all
-        .filter(|other| are_similar_dots(&dots[*other], &own, limits))
-        .min_by(|a, b| near(*a).total_cmp(&near(*b)));
+    let best =
+        all.filter(|other| are_similar_dots(&dots[*other], &own, limits)).min_by(|a, b| near(*a).total_cmp(&near(*b)));
     if let Some(other) = best {
         taken[other] = true;
         lattice.insert(next, other);
@@ -141,11 +140,8 @@ fn predict_place(
     next: GridCorner,
     basis: &Matrix2<f64>,
 ) -> Option<(Vector2<f64>, f64)> {
-    let near: Vec<(GridCorner, Vector2<f64>)> = places
-        .iter()
-        .filter(|it| (it.0[0] - own[0]).abs() <= 2 && (it.0[1] - own[1]).abs() <= 2)
-        .copied()
-        .collect();
+    let near: Vec<(GridCorner, Vector2<f64>)> =
+        places.iter().filter(|it| (it.0[0] - own[0]).abs() <= 2 && (it.0[1] - own[1]).abs() <= 2).copied().collect();
     let place = near.iter().find(|it| it.0 == own)?.1;
     let slope = if near.len() >= 3 { middle_slope(&near).unwrap_or(*basis) } else { *basis };
     let step = Vector2::new(f64::from(next[0] - own[0]), f64::from(next[1] - own[1]));
@@ -172,8 +168,7 @@ pub(crate) fn prune<T>(
     off: (f64, f64),
 ) {
     loop {
-        let pairs: Vec<PointPair> =
-            found.iter().map(|(id, it)| (layout.corner(*id), place(it), 1.0)).collect();
+        let pairs: Vec<PointPair> = found.iter().map(|(id, it)| (layout.corner(*id), place(it), 1.0)).collect();
         let part = |(id, it): (&usize, &T)| {
             let point = layout.corner(*id);
             let part = map_near(&pairs, point).and_then(|(map, nearest)| {

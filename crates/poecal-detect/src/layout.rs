@@ -99,9 +99,7 @@ impl BoardLayout {
     pub fn new(spec: &BoardSpec) -> Self {
         let (squares, square_m, pattern) = (spec.squares(), spec.square_m(), BoardPattern::Squares);
         match spec {
-            BoardSpec::Chessboard(_) => {
-                BoardLayout { squares, square_m, markers: None, first_dark: true, pattern }
-            }
+            BoardSpec::Chessboard(_) => BoardLayout { squares, square_m, markers: None, first_dark: true, pattern },
             BoardSpec::Circles(Circles { asymmetric, .. }) => {
                 let diameter = if *asymmetric { 0.8 } else { 0.5 };
                 let pattern = BoardPattern::Dots { asymmetric: *asymmetric, diameter };
@@ -109,27 +107,13 @@ impl BoardLayout {
             }
             BoardSpec::Tags(Tags { dictionary, .. }) => {
                 let (columns, rows, gap, border) = (5, 3, 0.75, 1);
-                let pattern =
-                    TagGrid { columns, rows, gap, border, kalibr: false, dictionary: dictionary.clone() };
-                BoardLayout {
-                    squares,
-                    square_m,
-                    markers: None,
-                    first_dark: true,
-                    pattern: BoardPattern::Tags(pattern),
-                }
+                let pattern = TagGrid { columns, rows, gap, border, kalibr: false, dictionary: dictionary.clone() };
+                BoardLayout { squares, square_m, markers: None, first_dark: true, pattern: BoardPattern::Tags(pattern) }
             }
             BoardSpec::AprilGrid(AprilGrid { columns, rows, spacing, dictionary, .. }) => {
                 let (columns, rows, gap, border) = (*columns, *rows, *spacing, 2);
-                let pattern =
-                    TagGrid { columns, rows, gap, border, kalibr: true, dictionary: dictionary.clone() };
-                BoardLayout {
-                    squares,
-                    square_m,
-                    markers: None,
-                    first_dark: true,
-                    pattern: BoardPattern::Tags(pattern),
-                }
+                let pattern = TagGrid { columns, rows, gap, border, kalibr: true, dictionary: dictionary.clone() };
+                BoardLayout { squares, square_m, markers: None, first_dark: true, pattern: BoardPattern::Tags(pattern) }
             }
             BoardSpec::Charuco(Charuco { marker_m, dictionary, legacy, rows, .. }) => BoardLayout {
                 squares,
@@ -192,12 +176,8 @@ impl BoardLayout {
         let first = Vector2::new(1.0, 1.0);
         let all = 0..self.corners();
         match &self.pattern {
-            BoardPattern::Squares => {
-                all.map(|id| point(PointKind::Corner, id, self.corner(id) - first)).collect()
-            }
-            BoardPattern::Dots { .. } => {
-                all.map(|id| point(PointKind::Dot, id, self.corner(id) - first)).collect()
-            }
+            BoardPattern::Squares => all.map(|id| point(PointKind::Corner, id, self.corner(id) - first)).collect(),
+            BoardPattern::Dots { .. } => all.map(|id| point(PointKind::Dot, id, self.corner(id) - first)).collect(),
             BoardPattern::Tags(tags) if tags.kalibr => {
                 let origin = self.corner(3);
                 let off = |id: usize| self.corner(id) - origin;

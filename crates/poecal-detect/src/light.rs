@@ -63,11 +63,8 @@ impl PictureLight {
         let (darkest, lightest) = (quantile(0.01).unwrap_or(0) as f64, quantile(0.99).unwrap_or(255) as f64);
         let white = counts[252..].iter().sum::<usize>() as f64 / total.max(1) as f64;
         let at = (slopes.len() * 399 / 400).min(slopes.len().saturating_sub(1));
-        let steepest = if slopes.is_empty() {
-            0.0
-        } else {
-            f64::from(*slopes.select_nth_unstable_by(at, f32::total_cmp).1)
-        };
+        let steepest =
+            if slopes.is_empty() { 0.0 } else { f64::from(*slopes.select_nth_unstable_by(at, f32::total_cmp).1) };
         PictureLight { lightest, white, edge_px: (lightest - darkest) / steepest.max(0.1) }
     }
 }

@@ -143,8 +143,7 @@ pub(crate) fn sign_and_bell(x: f32) -> (f32, f32) {
     let bell = exp(-0.5 * x * x);
     let z = x.abs() * std::f32::consts::FRAC_1_SQRT_2;
     let t = 1.0 / (1.0 + 0.327_591_1 * z);
-    let series =
-        t * (0.254_829_6 + t * (-0.284_496_74 + t * (1.421_413_8 + t * (-1.453_152 + t * 1.061_405_4))));
+    let series = t * (0.254_829_6 + t * (-0.284_496_74 + t * (1.421_413_8 + t * (-1.453_152 + t * 1.061_405_4))));
     ((1.0 - series * bell).copysign(x), bell)
 }
 
@@ -157,10 +156,7 @@ fn exp(x: f32) -> f32 {
     let shifted = power + WHOLE;
     let part = (power - (shifted - WHOLE)) * std::f32::consts::LN_2;
     let series = 1.0
-        + part
-            * (1.0
-                + part
-                    * (0.5 + part * (1.0 / 6.0 + part * (1.0 / 24.0 + part * (1.0 / 120.0 + part / 720.0)))));
+        + part * (1.0 + part * (0.5 + part * (1.0 / 6.0 + part * (1.0 / 24.0 + part * (1.0 / 120.0 + part / 720.0)))));
     series * f32::from_bits((shifted.to_bits() << 23).wrapping_add(1.0_f32.to_bits()))
 }
 
@@ -178,8 +174,7 @@ mod tests {
                 found.add(&mut [*ys, *xs, xs.map(|it| it * it)], &mut levels.clone(), used);
             }
             let (normal, right, squares) = found.into_equations();
-            let row =
-                |[x, y, level]: [f32; 3]| (SVector::from([y, x, x * x].map(f64::from)), f64::from(level));
+            let row = |[x, y, level]: [f32; 3]| (SVector::from([y, x, x * x].map(f64::from)), f64::from(level));
             let rows: Vec<_> = pixels.iter_pixels().map(row).collect();
             let expected = rows.iter().fold(SMatrix::zeros(), |sum, it| sum + it.0 * it.0.transpose());
             // Integers and halves: without rounding.

@@ -62,13 +62,7 @@ pub(crate) fn seek(gray: &Gray, layout: &BoardLayout, noise: f64, named: &mut Nu
 }
 
 /// The dot at a point of the board's plane, if there is one of the usual size at its predicted position.
-pub(crate) fn dot_at(
-    gray: &Gray,
-    noise: f64,
-    all: &[PointPair],
-    point: Vector2<f64>,
-    radius: f64,
-) -> Option<Dot> {
+pub(crate) fn dot_at(gray: &Gray, noise: f64, all: &[PointPair], point: Vector2<f64>, radius: f64) -> Option<Dot> {
     let (map, nearest) = map_near(all, point).filter(|it| it.1 < NEAR)?;
     let (place, slope) = (map.map(point)?, map.slope(point)?);
     let spread = slope * slope.transpose() * (radius * radius);

@@ -125,9 +125,7 @@ fn search(gray: &Gray, expected: &SaddlePrior) -> Option<Vector2<f64>> {
     let quarter = |place: Vector2<f64>, x: f64, y: f64| {
         let sum: f64 = AT
             .iter()
-            .map(|[a, b]| {
-                gray.level_at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y))
-            })
+            .map(|[a, b]| gray.level_at(place + window.sides.column(0) * (a * x) + window.sides.column(1) * (b * y)))
             .sum();
         sum / AT.len() as f64
     };
@@ -329,13 +327,7 @@ fn skew(rho: f32, h: f32, k: f32) -> f32 {
 }
 
 /// Fits crossing lines in a window about a position.
-fn fit(
-    gray: &Gray,
-    expected: &SaddlePrior,
-    place: Vector2<f64>,
-    window: &CornerWindow,
-    noise: f64,
-) -> Option<Saddle> {
+fn fit(gray: &Gray, expected: &SaddlePrior, place: Vector2<f64>, window: &CornerWindow, noise: f64) -> Option<Saddle> {
     let mut middle = place;
     let mut pixels = window.pixels(gray, middle);
     if pixels.len() < 2 * UNKNOWNS {
@@ -357,8 +349,7 @@ fn fit(
     }
     let sums = crossing.sums(&pixels, middle);
     let variance = sums.squares / (pixels.len() - UNKNOWNS) as f64;
-    let covariance =
-        sums.normal.cholesky()?.inverse() * (variance * crossing.correlated_pixels(&pixels, middle));
+    let covariance = sums.normal.cholesky()?.inverse() * (variance * crossing.correlated_pixels(&pixels, middle));
     let sigma_px = (0.5 * (covariance[(0, 0)] + covariance[(1, 1)]) + FLOOR_PX * FLOOR_PX).sqrt();
     let half = if expected.dark_before { -crossing.half } else { crossing.half };
     let start = Crossing::start(expected, place, &pixels);
@@ -376,12 +367,7 @@ fn fit(
 }
 
 /// Levenberg-Marquardt from a start.
-fn descend_crossing(
-    mut crossing: Crossing,
-    pixels: &Pixels,
-    middle: Vector2<f64>,
-    steps: usize,
-) -> Option<Crossing> {
+fn descend_crossing(mut crossing: Crossing, pixels: &Pixels, middle: Vector2<f64>, steps: usize) -> Option<Crossing> {
     let mut sums = crossing.sums(pixels, middle);
     let mut damping = 1e-3;
     for _ in 0..steps {

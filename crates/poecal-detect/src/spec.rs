@@ -110,8 +110,9 @@ impl BoardSpec {
                 [columns * (1 + usize::from(*asymmetric)) + 1, rows + 1]
             }
             BoardSpec::Tags(_) => [10, 7],
-            BoardSpec::AprilGrid(AprilGrid { columns, rows, spacing, .. }) => [columns, rows]
-                .map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing + 2.0).ceil() as usize),
+            BoardSpec::AprilGrid(AprilGrid { columns, rows, spacing, .. }) => {
+                [columns, rows].map(|it| (*it as f64 + it.saturating_sub(1) as f64 * spacing + 2.0).ceil() as usize)
+            }
         }
     }
 
@@ -132,9 +133,7 @@ impl BoardSpec {
     #[must_use]
     pub fn ruled_m(&self) -> [f64; 2] {
         match self {
-            BoardSpec::Chessboard(_) | BoardSpec::Charuco(_) => {
-                self.squares().map(|it| it as f64 * self.square_m())
-            }
+            BoardSpec::Chessboard(_) | BoardSpec::Charuco(_) => self.squares().map(|it| it as f64 * self.square_m()),
             BoardSpec::Circles(board) => self.squares().map(|it| it.saturating_sub(2) as f64 * board.pitch_m),
             BoardSpec::Tags(board) => [board.size_m; 2],
             BoardSpec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
@@ -168,18 +167,14 @@ impl FromStr for BoardSpec {
         match parts.as_slice() {
             ["chessboard", size, square] => {
                 let [columns, rows] = size_of("squares", size, 3)?;
-                Ok(BoardSpec::Chessboard(Chessboard {
-                    columns,
-                    rows,
-                    square_m: length_m("side of a square", square)?,
-                }))
+                Ok(BoardSpec::Chessboard(Chessboard { columns, rows, square_m: length_m("side of a square", square)? }))
             }
             ["chessboard", ..] => Err(spec_error(text, CHESSBOARD)),
             ["circles", size, pitch] => circles(size, pitch, false),
             ["circles", size, pitch, "asymmetric"] => circles(size, pitch, true),
-            ["circles", _, _, last] => Err(Error::new(format!(
-                "found {last:?} at the end of a board, expected asymmetric or nothing"
-            ))),
+            ["circles", _, _, last] => {
+                Err(Error::new(format!("found {last:?} at the end of a board, expected asymmetric or nothing")))
+            }
             ["circles", ..] => Err(spec_error(text, CIRCLES)),
             ["tags", family, size] => {
                 let dictionary = Dictionary::from_name(family)?;
@@ -195,9 +190,7 @@ impl FromStr for BoardSpec {
                 Err(Error::new(format!("found {last:?} at the end of a board, expected legacy or nothing")))
             }
             ["charuco", ..] => Err(spec_error(text, CHARUCO)),
-            _ => {
-                Err(spec_error(text, &format!("{CHESSBOARD}, {CHARUCO}, {CIRCLES}, {TAGS}, or {APRILGRID}")))
-            }
+            _ => Err(spec_error(text, &format!("{CHESSBOARD}, {CHARUCO}, {CIRCLES}, {TAGS}, or {APRILGRID}"))),
         }
     }
 }
@@ -210,8 +203,7 @@ fn charuco(size: &str, [square, marker]: [&str; 2], name: &str, legacy: bool) ->
     let [columns, rows] = size_of("squares", size, 3)?;
     let (square_m, marker_m) = (length_m("side of a square", square)?, length_m("side of a marker", marker)?);
     if marker_m >= square_m {
-        let message =
-            format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
+        let message = format!("found markers of {marker} in squares of {square}, expected markers that are smaller");
         return Err(Error::new(message));
     }
     let dictionary = Dictionary::from_name(name)?;
@@ -257,8 +249,7 @@ fn size_of(what: &str, text: &str, least: usize) -> Result<[usize; 2]> {
         ))
     };
     let (columns, rows) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
-    let number =
-        |part: &str| part.parse().ok().filter(|it| (least..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
+    let number = |part: &str| part.parse().ok().filter(|it| (least..=MOST_SQUARES).contains(it)).ok_or_else(wrong);
     Ok([number(columns)?, number(rows)?])
 }
 
@@ -295,12 +286,7 @@ impl fmt::Display for BoardSpec {
             }
             BoardSpec::AprilGrid(board) => {
                 let AprilGrid { columns, rows, size_m, spacing, dictionary } = board;
-                write!(
-                    formatter,
-                    "aprilgrid:{columns}x{rows}:{}mm:{spacing}:{}",
-                    mm(*size_m),
-                    dictionary.name()
-                )
+                write!(formatter, "aprilgrid:{columns}x{rows}:{}mm:{spacing}:{}", mm(*size_m), dictionary.name())
             }
             BoardSpec::Charuco(board) => {
                 let Charuco { columns, rows, square_m, marker_m, dictionary, legacy } = board;

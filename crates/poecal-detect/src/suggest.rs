@@ -37,9 +37,8 @@ pub(crate) fn suggest(spec: &BoardSpec, pictures: &[&Gray], most_dots: usize) ->
     let all: Vec<Suggestion> = match spec {
         BoardSpec::Chessboard(board) => {
             let seen = prepare_pictures(&seen, |_, _| ());
-            let detect = |layout: &BoardLayout, one: &AnalysedPicture<'_, ()>| {
-                chessboard::detect(one.gray, layout, one.noise)
-            };
+            let detect =
+                |layout: &BoardLayout, one: &AnalysedPicture<'_, ()>| chessboard::detect(one.gray, layout, one.noise);
             chessboards(board).into_iter().map(|spec| suggestion(spec, &seen, detect)).collect()
         }
         BoardSpec::Charuco(board) => charucos_in(board, &prepare_pictures(&seen, quads)),
@@ -64,12 +63,8 @@ struct AnalysedPicture<'a, P> {
     parts: P,
 }
 
-fn prepare_pictures<'a, P>(
-    seen: &[(&'a Gray, f64)],
-    parts: impl Fn(&Gray, f64) -> P,
-) -> Vec<AnalysedPicture<'a, P>> {
-    let one =
-        |(gray, noise): &(&'a Gray, f64)| AnalysedPicture { gray, noise: *noise, parts: parts(gray, *noise) };
+fn prepare_pictures<'a, P>(seen: &[(&'a Gray, f64)], parts: impl Fn(&Gray, f64) -> P) -> Vec<AnalysedPicture<'a, P>> {
+    let one = |(gray, noise): &(&'a Gray, f64)| AnalysedPicture { gray, noise: *noise, parts: parts(gray, *noise) };
     seen.iter().map(one).collect()
 }
 
@@ -87,9 +82,7 @@ fn tags_in(board: &Tags, seen: &[AnalysedPicture<'_, Vec<Quad>>]) -> Vec<Suggest
     let tried = |dictionary: Dictionary| {
         let reader = MarkerReader::new(&dictionary);
         let spec = BoardSpec::Tags(Tags { dictionary: dictionary.clone(), ..*board });
-        suggestion(spec, seen, |_, one| {
-            tags::of_quads(one.gray, (&dictionary, &reader), one.noise, &one.parts)
-        })
+        suggestion(spec, seen, |_, one| tags::of_quads(one.gray, (&dictionary, &reader), one.noise, &one.parts))
     };
     families(&board.dictionary, 1).map(tried).collect()
 }
@@ -164,8 +157,7 @@ fn charucos(board: &Charuco) -> Vec<Charuco> {
     for dictionary in std::iter::once(own.clone()).chain(others) {
         for [columns, rows] in [[board.columns, board.rows], [board.rows, board.columns]] {
             for legacy in [board.legacy, !board.legacy] {
-                let other =
-                    Charuco { columns, rows, dictionary: dictionary.clone(), legacy, ..board.clone() };
+                let other = Charuco { columns, rows, dictionary: dictionary.clone(), legacy, ..board.clone() };
                 // With an odd number of rows both patterns are the same.
                 let alike = legacy != board.legacy && rows % 2 == 1;
                 if other != *board && !alike {

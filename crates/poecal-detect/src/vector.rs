@@ -22,11 +22,7 @@ pub(crate) fn run_vectorized<T>(work: impl FnOnce() -> T) -> T {
 /// Changes each number by those at the same index in other slices, up to the shortest of them. With iterators the compiler leaves calls.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)]
-pub(crate) fn change<T: Copy, const N: usize, A: Copy>(
-    to: &mut [T],
-    by: [&[A]; N],
-    f: impl Fn(T, [A; N]) -> T,
-) {
+pub(crate) fn change<T: Copy, const N: usize, A: Copy>(to: &mut [T], by: [&[A]; N], f: impl Fn(T, [A; N]) -> T) {
     let count = by.iter().map(|it| it.len()).fold(to.len(), usize::min);
     let (to, by) = (&mut to[..count], by.map(|it| &it[..count]));
     for k in 0..count {

@@ -37,10 +37,7 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
             let shift = by_twist(&pose.translation) * TARGET_WEIGHT;
             add(shift, (pose.translation - nominal.translation) * TARGET_WEIGHT);
             let turn = rotation::log(&(pose.rotation * nominal.rotation.transpose()));
-            add(
-                by_turn(&nalgebra::Matrix3::identity(), TARGET_WEIGHT * length_m),
-                turn * (TARGET_WEIGHT * length_m),
-            );
+            add(by_turn(&nalgebra::Matrix3::identity(), TARGET_WEIGHT * length_m), turn * (TARGET_WEIGHT * length_m));
         }
         let upper: Vec<f64> = (0..36).map(|k| gram[(k / 6, k % 6)]).collect();
         let Some(factor) = linalg::cholesky(&upper, 6, 1e-12 * gram.trace()) else { break };
@@ -129,9 +126,7 @@ fn motions(estimate: &Estimate, layout: &Layout, step: Vec<f64>) -> (Vec<Vector6
         let Some(axis) = parameter.screw_axis() else { continue };
         let own: Vec<f64> = places.iter().map(|&(place, scale)| rest[place] / scale).collect();
         let local = match axis.kind {
-            JointKind::Revolute => {
-                Twist::new(Vector3::new(own[0], own[1], 0.0), Vector3::new(own[2], own[3], 0.0))
-            }
+            JointKind::Revolute => Twist::new(Vector3::new(own[0], own[1], 0.0), Vector3::new(own[2], own[3], 0.0)),
             JointKind::Prismatic => Twist::new(Vector3::zeros(), Vector3::new(own[0], own[1], 0.0)),
         };
         motions[axis.joint] = estimate.base_from_axis[axis.joint].transform(&local).to_vector();

@@ -8,7 +8,8 @@ use poecal_model::robot::Tolerance;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::source_text;
 
-const EXPECTED: &str = "MOC.cfg of a controller of ABB whose arm has Absolute Accuracy, with error_offset_x and others in ARM_CALIB";
+const EXPECTED: &str =
+    "MOC.cfg of a controller of ABB whose arm has Absolute Accuracy, with error_offset_x and others in ARM_CALIB";
 /// Errors of the position of an axis, metres.
 const LENGTHS: [&str; 3] = ["error_offset_x", "error_offset_y", "error_offset_z"];
 /// Errors of the direction of an axis, radians. `jaw` is the file's own word.
@@ -59,14 +60,11 @@ impl AbbCalibration {
             let name = entry.text("name").unwrap_or_default().to_owned();
             match entry.section {
                 "ARM_CALIB" => {
-                    let (lengths_m, angles_rad) =
-                        (entry.numbers(&LENGTHS, path)?, entry.numbers(&ANGLES, path)?);
+                    let (lengths_m, angles_rad) = (entry.numbers(&LENGTHS, path)?, entry.numbers(&ANGLES, path)?);
                     arms.push(ArmErrors { name, lengths_m, angles_rad });
                 }
                 "JOINT_CALIB" => {
-                    joints.extend(
-                        entry.numbers(&["Compl"], path)?.into_iter().map(|gives| (name.clone(), gives)),
-                    );
+                    joints.extend(entry.numbers(&["Compl"], path)?.into_iter().map(|gives| (name.clone(), gives)));
                 }
                 _ => {}
             }
@@ -87,9 +85,7 @@ impl AbbCalibration {
         let (length_m, angle_rad) = (rms(|arm| &arm.lengths_m), rms(|arm| &arm.angles_rad));
         match (length_m, angle_rad) {
             (Some(length_m), Some(angle_rad)) => Ok(Tolerance { angle_rad, length_m }),
-            _ => Err(ErrorKind::Model
-                .error(format!("found no errors of axes, expected {EXPECTED}"))
-                .in_file(path)),
+            _ => Err(ErrorKind::Model.error(format!("found no errors of axes, expected {EXPECTED}")).in_file(path)),
         }
     }
 }
@@ -120,9 +116,11 @@ impl SectionEntry<'_> {
             match word.parse::<f64>() {
                 Ok(number) if number.abs() < 1.0 => numbers.push(number),
                 _ => {
-                    return Err(ErrorKind::Model.error(format!(
-                        "found `{word}` for `-{key}`, expected a number of metres, radians or rad/Nm below 1"
-                    )).at_line(path, line));
+                    return Err(ErrorKind::Model
+                        .error(format!(
+                            "found `{word}` for `-{key}`, expected a number of metres, radians or rad/Nm below 1"
+                        ))
+                        .at_line(path, line));
                 }
             }
         }
@@ -164,18 +162,12 @@ mod tests {
     #[test]
     fn sizes_and_pattern_are_read() {
         let found = AbbCalibration::parse(TEXT, "MOC.cfg").unwrap();
-        let pattern: Vec<_> = found
-            .arms
-            .iter()
-            .map(|arm| (arm.name.as_str(), arm.lengths_m.len(), arm.angles_rad.len()))
-            .collect();
+        let pattern: Vec<_> =
+            found.arms.iter().map(|arm| (arm.name.as_str(), arm.lengths_m.len(), arm.angles_rad.len())).collect();
         assert_eq!(pattern, [("rob1_1", 2, 1), ("rob1_2", 0, 1)]);
         assert_eq!(found.joints, [("rob1_2".to_owned(), 1.1e-5)]);
         let tolerance = found.tolerance("MOC.cfg").unwrap();
-        assert!(
-            (tolerance.length_m - 12.5e-8_f64.sqrt()).abs() < 1e-18
-                && (tolerance.angle_rad - 1e-3).abs() < 1e-18
-        );
+        assert!((tolerance.length_m - 12.5e-8_f64.sqrt()).abs() < 1e-18 && (tolerance.angle_rad - 1e-3).abs() < 1e-18);
     }
 
     #[test]
@@ -187,9 +179,6 @@ mod tests {
         );
         let none = AbbCalibration::parse("ROBOT:\n  -name \"ROB_1\"\n", "MOC.cfg").unwrap();
         let error = none.tolerance("MOC.cfg").unwrap_err().to_string();
-        assert!(
-            error.starts_with("MOC.cfg: found no errors of axes, expected MOC.cfg of a controller"),
-            "{error}"
-        );
+        assert!(error.starts_with("MOC.cfg: found no errors of axes, expected MOC.cfg of a controller"), "{error}");
     }
 }

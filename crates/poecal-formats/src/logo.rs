@@ -20,9 +20,7 @@ pub fn read(path: &Path) -> Result<(&'static str, Vec<u8>)> {
         |error| refused(format!("the file cannot be read ({error}), expected a picture (PNG, JPEG or SVG)")),
     )?;
     if bytes.len() as u64 > LARGEST {
-        return Err(refused(
-            "found more than 1 MiB, expected a picture of at most 1 MiB: make it smaller".to_owned(),
-        ));
+        return Err(refused("found more than 1 MiB, expected a picture of at most 1 MiB: make it smaller".to_owned()));
     }
     let text = || String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]).contains("<svg");
     let kind = match bytes.as_slice() {

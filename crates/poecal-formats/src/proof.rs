@@ -67,8 +67,7 @@ impl<'a> ReferencePoses<'a> {
         let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
         let mut compare = |poses: &[Pose], other: &Robot| {
             for (a, b) in poses.iter().zip(other.forward_kinematics_of(&readings)) {
-                largest.position_m =
-                    larger_or_nan(largest.position_m, (a.translation - b.translation).norm());
+                largest.position_m = larger_or_nan(largest.position_m, (a.translation - b.translation).norm());
                 let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
                 largest.rotation_rad = larger_or_nan(largest.rotation_rad, turn);
             }
@@ -77,9 +76,7 @@ impl<'a> ReferencePoses<'a> {
         if let Some(tip) = poses.next() {
             compare(tip, other);
         }
-        for (mounts, others) in
-            [(&self.robot.instruments, &other.instruments), (&self.robot.mounted, &other.mounted)]
-        {
+        for (mounts, others) in [(&self.robot.instruments, &other.instruments), (&self.robot.mounted, &other.mounted)] {
             for mount in mounts {
                 let Some(found) = others.iter().find(|other| other.name == mount.name) else { return none };
                 if let Some(poses) = poses.next() {

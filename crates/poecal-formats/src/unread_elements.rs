@@ -95,8 +95,7 @@ pub(crate) fn sentence<'a>(
     known: &[KnownElement],
 ) -> Result<Option<String>> {
     let mut found = Vec::new();
-    let is_sought =
-        |it: &Node<'a, 'a>| !root.has_tag_name("mujoco") || SOUGHT_IN.contains(&it.tag_name().name());
+    let is_sought = |it: &Node<'a, 'a>| !root.has_tag_name("mujoco") || SOUGHT_IN.contains(&it.tag_name().name());
     let of_root = root.children().rev().filter(Node::is_element);
     let mut steps: Vec<Node<'a, 'a>> = of_root.filter(is_sought).collect();
     // Not recursive: models may be deep.
@@ -113,9 +112,8 @@ pub(crate) fn sentence<'a>(
             }
         }
         let mut next = Vec::new();
-        for child in node
-            .children()
-            .filter(|it| it.is_element() && it.tag_name().namespace() == node.tag_name().namespace())
+        for child in
+            node.children().filter(|it| it.is_element() && it.tag_name().namespace() == node.tag_name().namespace())
         {
             let name = child.tag_name().name();
             if has(elements, name) {
@@ -178,9 +176,7 @@ mod tests {
 
     #[test]
     fn what_is_known_is_not_named_and_what_is_not_is_once() {
-        for sound in
-            [urdf("", ""), urdf("", "<dynamics damping='1'/>"), mjcf("armature='1'"), sdf("<physics/>")]
-        {
+        for sound in [urdf("", ""), urdf("", "<dynamics damping='1'/>"), mjcf("armature='1'"), sdf("<physics/>")] {
             assert_eq!(sound.unwrap().remarks(), [""; 0]);
         }
         let found = urdf("colour='red'", "<wire length='1'/><wire length='2'/><hint/>").unwrap();

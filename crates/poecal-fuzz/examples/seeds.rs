@@ -112,11 +112,7 @@ fn main() {
     let all = messages();
     put("messages", "lines", &all.join("\n"));
     // Blocks, also without the lens.
-    put(
-        "messages",
-        "blocks",
-        &format!("---\n{}", all.iter().map(|it| block(it)).collect::<Vec<_>>().join("\n---\n")),
-    );
+    put("messages", "blocks", &format!("---\n{}", all.iter().map(|it| block(it)).collect::<Vec<_>>().join("\n---\n")));
     for (name, text) in recorded_files() {
         put_bytes("recorded", &name, &text);
     }
@@ -163,8 +159,7 @@ fn put_bytes(target: &str, name: &str, bytes: &[u8]) {
 
 /// Rows of an elbow: readings (deg) and points (mm), with their columns.
 fn rows() -> Vec<Vec<String>> {
-    let made =
-        Simulation { count: 4, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap().data;
+    let made = Simulation { count: 4, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap().data;
     let header = made.reading_names().iter().map(|it| format!("{it}[deg]"));
     let header = header.chain(["x[mm]", "y[mm]", "z[mm]"].map(str::to_owned)).collect();
     let row = |at: usize| {
@@ -200,8 +195,7 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let sheet = each(&row);
     let heads = ["Joint angles (deg),,,,,,Measured (mm),,", "1,2,3,4,5,6,X,Y,Z"];
     let heads = heads.map(|it| it.split(',').map(str::to_owned).collect::<Vec<_>>());
-    let under_groups: String =
-        heads.iter().chain(&rows[1..]).enumerate().map(|(at, cells)| row(at, cells)).collect();
+    let under_groups: String = heads.iter().chain(&rows[1..]).enumerate().map(|(at, cells)| row(at, cells)).collect();
     let office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     let package = "http://schemas.openxmlformats.org/package/2006/relationships";
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
@@ -234,14 +228,12 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
             true => format!(
                 "<table:table-cell office:value-type=\"float\" office:value=\"{text}\"><text:p>{text}</text:p></table:table-cell>"
             ),
-            false => format!(
-                "<table:table-cell office:value-type=\"string\"><text:p>{text}</text:p></table:table-cell>"
-            ),
+            false => {
+                format!("<table:table-cell office:value-type=\"string\"><text:p>{text}</text:p></table:table-cell>")
+            }
         };
         let cells: String = cells.iter().map(cell).collect();
-        format!(
-            "<table:table-row>{cells}<table:table-cell table:number-columns-repeated=\"9\"/></table:table-row>"
-        )
+        format!("<table:table-row>{cells}<table:table-cell table:number-columns-repeated=\"9\"/></table:table-row>")
     });
     let ods = parts(&[
         ("mimetype", "application/vnd.oasis.opendocument.spreadsheet".to_owned()),
@@ -262,11 +254,9 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     };
     let points: String = rows.iter().map(|row| row[6..].join(",") + "\n").collect();
     let between = format!("\n{BETWEEN}{BETWEEN}\n");
-    let bag =
-        [bag("sensor_msgs/msg/JointState", &joints), between.into_bytes(), points.into_bytes()].concat();
+    let bag = [bag("sensor_msgs/msg/JointState", &joints), between.into_bytes(), points.into_bytes()].concat();
     let gray = |width: usize, height: usize| {
-        let level =
-            |at: usize| if (at % width / 5 + at / width / 5).is_multiple_of(2) { 30.0 } else { 220.0 };
+        let level = |at: usize| if (at % width / 5 + at / width / 5).is_multiple_of(2) { 30.0 } else { 220.0 };
         poecal_detect::Gray::new(width, height, (0..width * height).map(level).collect()).unwrap()
     };
     vec![
@@ -277,18 +267,13 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
         ("bags", "joints", bag),
         ("pictures", "png", poecal_detect::preview(&gray(60, 40), &[]).unwrap()),
         ("pictures", "jpeg", include_bytes!("../../poecal-detect/tests/it/pictures/gray.jpg").to_vec()),
-        (
-            "pictures",
-            "progressive",
-            include_bytes!("../../poecal-detect/tests/it/pictures/progressive.jpg").to_vec(),
-        ),
+        ("pictures", "progressive", include_bytes!("../../poecal-detect/tests/it/pictures/progressive.jpg").to_vec()),
     ]
 }
 
 /// An old workbook (.xls) of these rows.
 fn old_workbook(rows: &[Vec<String>]) -> Vec<u8> {
-    let record =
-        |kind: u16, data: &[u8]| [&kind.to_le_bytes(), &(data.len() as u16).to_le_bytes(), data].concat();
+    let record = |kind: u16, data: &[u8]| [&kind.to_le_bytes(), &(data.len() as u16).to_le_bytes(), data].concat();
     let begin = record(0x0809, &[0, 6, 5, 0]);
     let globals = |start: u32| {
         let name = [&start.to_le_bytes()[..], &[0, 0, 1, 0], b"A"].concat();
@@ -313,9 +298,7 @@ fn old_workbook(rows: &[Vec<String>]) -> Vec<u8> {
 
 /// Lists of poses, a ledger and a history.
 fn lists() -> Vec<(&'static str, &'static str, Vec<u8>)> {
-    let first = |text: &str, count: usize| {
-        text.lines().take(count).map(|line| format!("{line}\n")).collect::<String>()
-    };
+    let first = |text: &str, count: usize| text.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
     let sample = |text: &str| text.repeat(3).into_bytes();
     let row = |serial: &str, exit: u8| {
         format!(
@@ -348,13 +331,12 @@ fn recorded_files() -> Vec<(String, Vec<u8>)> {
     };
     let degrees = 1_f64.to_degrees();
     let each = |of: Line<'_>| -> String {
-        let row = |at: usize| {
-            of(at + 1, made.readings(at), made.observations[at].measurement.pose().translation.into())
-        };
+        let row =
+            |at: usize| of(at + 1, made.readings(at), made.observations[at].measurement.pose().translation.into());
         (0..made.len()).map(row).collect()
     };
-    let own_joints = format!("{}\n", made.reading_names().join("[deg],"))
-        + &each(&|_, it, _| numbers(it, degrees, ",") + "\n");
+    let own_joints =
+        format!("{}\n", made.reading_names().join("[deg],")) + &each(&|_, it, _| numbers(it, degrees, ",") + "\n");
     let own_points = "x[mm],y[mm],z[mm]\n".to_owned() + &each(&|_, _, it| numbers(&it, 1e3, ",") + "\n");
     let motive = "Format Version,1.24,Take Name,A,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n,Type,Marker,Marker,Marker\n\
          ,Name,A,A,A\n,ID,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n"
@@ -364,8 +346,7 @@ fn recorded_files() -> Vec<(String, Vec<u8>)> {
         (1..).zip(it).map(|(at, it)| format!(" {letter}{at}=\"{:.3}\"", it * degrees)).collect()
     };
     let vicon = "Trajectories\n100\n,,A:A,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n".to_owned();
-    let segments =
-        "Segments\n100\n,,A:A,,,,,\nFrame,Sub Frame,RX,RY,RZ,TX,TY,TZ\n,,rad,rad,rad,mm,mm,mm\n".to_owned();
+    let segments = "Segments\n100\n,,A:A,,,,,\nFrame,Sub Frame,RX,RY,RZ,TX,TY,TZ\n,,rad,rad,rad,mm,mm,mm\n".to_owned();
     let joints = [
         (
             "rapid",
@@ -443,14 +424,8 @@ fn recorded_files() -> Vec<(String, Vec<u8>)> {
     ];
     let both = |one: &[u8], other: &[u8]| [one, format!("\n{BETWEEN}\n").as_bytes(), other].concat();
     let mut all: Vec<(String, Vec<u8>)> = Vec::new();
-    all.extend(
-        joints.iter().map(|(name, text)| ((*name).to_owned(), both(text.as_bytes(), own_points.as_bytes()))),
-    );
-    all.extend(
-        measured
-            .iter()
-            .map(|(name, text)| ((*name).to_owned(), both(own_joints.as_bytes(), text.as_bytes()))),
-    );
+    all.extend(joints.iter().map(|(name, text)| ((*name).to_owned(), both(text.as_bytes(), own_points.as_bytes()))));
+    all.extend(measured.iter().map(|(name, text)| ((*name).to_owned(), both(own_joints.as_bytes(), text.as_bytes()))));
     all.push(("workbook".to_owned(), both(WORKBOOK, WORKBOOK_POINTS)));
     let joint_state = |at: usize| {
         let mut cdr = Cdr::new(at);
@@ -464,10 +439,7 @@ fn recorded_files() -> Vec<(String, Vec<u8>)> {
         place.iter().for_each(|it| cdr.put(&it.to_le_bytes()));
         cdr
     };
-    all.push((
-        "bag".to_owned(),
-        both(&bag("sensor_msgs/msg/JointState", &joint_state), own_points.as_bytes()),
-    ));
+    all.push(("bag".to_owned(), both(&bag("sensor_msgs/msg/JointState", &joint_state), own_points.as_bytes())));
     // Compressed by message, as one uncompressed block of zstd.
     let packed = |at: usize| {
         let content = [vec![0, 1, 0, 0], joint_state(at).0].concat();
@@ -475,14 +447,8 @@ fn recorded_files() -> Vec<(String, Vec<u8>)> {
         let block = &((size << 3) | 1).to_le_bytes()[..3];
         [&b"\x28\xb5\x2f\xfd\xa0"[..], &size.to_le_bytes(), block, &content].concat()
     };
-    all.push((
-        "bag_packed".to_owned(),
-        both(&bag_of("sensor_msgs/msg/JointState", &packed), own_points.as_bytes()),
-    ));
-    all.push((
-        "bag_of_points".to_owned(),
-        both(own_joints.as_bytes(), &bag("geometry_msgs/msg/PointStamped", &point)),
-    ));
+    all.push(("bag_packed".to_owned(), both(&bag_of("sensor_msgs/msg/JointState", &packed), own_points.as_bytes())));
+    all.push(("bag_of_points".to_owned(), both(own_joints.as_bytes(), &bag("geometry_msgs/msg/PointStamped", &point))));
     all
 }
 
@@ -531,8 +497,7 @@ fn bag(kind: &str, message: &dyn Fn(usize) -> Cdr) -> Vec<u8> {
 /// A bag of messages in their stored form.
 fn bag_of(kind: &str, message: &dyn Fn(usize) -> Vec<u8>) -> Vec<u8> {
     let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
-    let record =
-        |kind: u8, content: &[u8]| [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat();
+    let record = |kind: u8, content: &[u8]| [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat();
     let number = |number: u16| number.to_le_bytes().to_vec();
     let mut out = b"\x89MCAP0\r\n".to_vec();
     out.extend(record(1, &[text("ros2"), text("")].concat()));
@@ -585,8 +550,7 @@ fn two_targets(robot: &Robot) -> String {
         let values: Vec<String> = made.data.readings(row).iter().map(|value| format!("{value:.6}")).collect();
         let [x, y, z]: [f64; 3] = seen.measurement.pose().translation.into();
         let name = ["a", "b"][row % 2];
-        writeln!(text, "{},{x:.6},{y:.6},{:.6},{name}", values.join(","), z + 0.01 * (row % 2) as f64)
-            .unwrap();
+        writeln!(text, "{},{x:.6},{y:.6},{:.6},{name}", values.join(","), z + 0.01 * (row % 2) as f64).unwrap();
     }
     text
 }
@@ -694,10 +658,7 @@ const BOARDS: [(&str, &str); 8] = [
          <Square_Size>25</Square_Size>\n<Marker_Size>18</Marker_Size>\n<ArUco_Dict_Name>DICT_4X4_50</ArUco_Dict_Name>\n\
          <Calibrate_Pattern>\"CHARUCOBOARD\"</Calibrate_Pattern>\n</Settings></opencv_storage>\n",
     ),
-    (
-        "points",
-        "csv\nboard,target,x[mm],y[mm],z[mm]\ncube,a,0,0,0\ncube,b,30,0,0\ncube,7,30,30.5,1\nother,a,0,0,0\n",
-    ),
+    ("points", "csv\nboard,target,x[mm],y[mm],z[mm]\ncube,a,0,0,0\ncube,b,30,0,0\ncube,7,30,30.5,1\nother,a,0,0,0\n"),
     ("corners", "csv\ncorner;x_mm;y_mm;z_mm\n0;0;0;0\n1;27,5;0;0\n2;0;27,5;0\n"),
 ];
 
@@ -717,8 +678,7 @@ fn messages() -> Vec<String> {
     let message = |(at, picture): (usize, &Picture)| {
         let names = list(made.data.reading_names().iter().map(|it| format!("\"{it}\"")).collect());
         let readings = list(made.data.readings(at).iter().map(|it| format!("{it:.6}")).collect());
-        let seen =
-            list(picture.corners.iter().map(|it| point("optical", [it.pixel.x, it.pixel.y])).collect());
+        let seen = list(picture.corners.iter().map(|it| point("optical", [it.pixel.x, it.pixel.y])).collect());
         let place = |it: &Corner| {
             let point_m = board.points[it.point as usize];
             point("checkerboard", [point_m.x, point_m.y])

@@ -169,8 +169,7 @@ impl<'a> Mutator<'a> {
     fn change_line(&mut self, data: &mut Vec<u8>, at: usize) {
         let start = data.iter().take(at).rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
         let rest = data.get(start..).unwrap_or_default();
-        let end =
-            start + rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |newline| newline + 1);
+        let end = start + rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |newline| newline + 1);
         match self.draw_below(5) {
             0 | 1 => drop(data.drain(start..end)),
             2 | 3 => {

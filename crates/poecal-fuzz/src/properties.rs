@@ -88,8 +88,5 @@ pub(crate) fn assert_alike(robot: &Robot, again: &Robot, tolerance: f64, what: &
     assert_eq!(names(robot), names(again), "{what}: joints");
     let size = size_m(robot);
     let found = Difference::from_robots(robot, again, 20);
-    assert!(
-        found.is_within(tolerance * size * size, tolerance * size),
-        "{what}: {found:?} of a robot of {size} m"
-    );
+    assert!(found.is_within(tolerance * size * size, tolerance * size), "{what}: {found:?} of a robot of {size} m");
 }

@@ -117,8 +117,7 @@ impl Tried {
             self.understood += usize::from(understood);
             return true;
         }
-        let path =
-            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("found-{}-{}", target.name, self.inputs));
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("found-{}-{}", target.name, self.inputs));
         fs::write(&path, data).unwrap();
         println!(
             "fuzz {}: FAILED after {:.1} s on {}; try it again: cargo test -p poecal-fuzz --test fuzz -- {} {}",

@@ -212,8 +212,7 @@ impl std::str::FromStr for Lag {
 
     /// Parses `12s`, or `12s+-2s`.
     fn from_str(text: &str) -> Result<Self> {
-        let seconds =
-            |word: &str| word.trim().strip_suffix('s')?.trim().parse().ok().filter(|it: &f64| it.is_finite());
+        let seconds = |word: &str| word.trim().strip_suffix('s')?.trim().parse().ok().filter(|it: &f64| it.is_finite());
         let (lag, off) = text.split_once("+-").map_or((text, None), |(lag, off)| (lag, Some(off)));
         let found = seconds(lag).zip(off.map_or(Some(LAG_OFF_S), seconds)).filter(|it| it.1 > 0.0);
         let Some((lag_s, off_s)) = found else {

@@ -71,19 +71,12 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
 fn residual(seen: MeasurementKind, method: Method) -> PaperResidual {
     match (seen, method) {
         (MeasurementKind::Poses, Method::GaussNewton) => PaperResidual::Spatial,
-        (MeasurementKind::Poses, Method::LevenbergMarquardt) | (MeasurementKind::Points, _) => {
-            PaperResidual::Tool
-        }
+        (MeasurementKind::Poses, Method::LevenbergMarquardt) | (MeasurementKind::Points, _) => PaperResidual::Tool,
     }
 }
 
 /// Marks the formulations and methods that reach a random truth from the nominal elbow.
-fn reaching_methods(
-    seen: MeasurementKind,
-    error_deg: f64,
-    seed: u64,
-    trial: u64,
-) -> Result<[bool; WAYS.len()]> {
+fn reaching_methods(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
     let nominal = tables::nominal_robot();
     let simulation = Simulation {
         error_rotation_rad: error_deg.to_radians(),
@@ -93,8 +86,7 @@ fn reaching_methods(
     let mut generator = ChaCha8Rng::seed_from_u64(derive_seed(seed, SeedPurpose::Truth, trial));
     let actual = simulation.perturb(&nominal, &mut generator);
     let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
-    let session =
-        PaperSession::new(&nominal, truth, seen, ROWS, derive_seed(seed, SeedPurpose::TruthRows, trial));
+    let session = PaperSession::new(&nominal, truth, seen, ROWS, derive_seed(seed, SeedPurpose::TruthRows, trial));
     // A radian counts as the length of the arm that it moves, so that neither outweighs the other.
     let noise = Noise::new(LENGTH_M, 1.0);
     let exact = session.exact_poses();

@@ -58,16 +58,14 @@ pub fn breakdown(options: &ReproductionOptions) -> Result<Breakdown> {
     let outcomes: Vec<Vec<BreakdownOutcome>> = (0..options.trials)
         .into_par_iter()
         .map(|trial| {
-            let kind =
-                if (trial / robots.len()).is_multiple_of(2) { SessionKind::POSE } else { SessionKind::POINT };
+            let kind = if (trial / robots.len()).is_multiple_of(2) { SessionKind::POSE } else { SessionKind::POINT };
             session(&robots[trial % robots.len()], kind, options.seed.wrapping_add(trial as u64))
         })
         .collect::<Result<_>>()?;
     let entries = losses().into_iter().enumerate().flat_map(|(l, (word, _))| {
         let outcomes = &outcomes;
         SHARES.iter().enumerate().map(move |(s, &share_percent)| {
-            let own: Vec<&BreakdownOutcome> =
-                outcomes.iter().map(|session| &session[l * SHARES.len() + s]).collect();
+            let own: Vec<&BreakdownOutcome> = outcomes.iter().map(|session| &session[l * SHARES.len() + s]).collect();
             entry(word, share_percent, &own)
         })
     });
@@ -105,8 +103,8 @@ fn session(robot: &Robot, kind: SessionKind, seed: u64) -> Result<Vec<BreakdownO
     for (_, robust) in losses() {
         for share in SHARES {
             let mut data = made.data.clone();
-            let gross = GrossErrors { share: f64::from(share) / 100.0, seed, ..GrossErrors::default() }
-                .spoil(&mut data);
+            let gross =
+                GrossErrors { share: f64::from(share) / 100.0, seed, ..GrossErrors::default() }.spoil(&mut data);
             let found = fit(&data, robust)?;
             let is_gross = |row: &u32| gross.binary_search(row).is_ok();
             let gross_suspected = found.robustness.suspects().filter(is_gross).count();

@@ -119,9 +119,7 @@ mod tests {
     fn free_screws_miss_their_constraints_and_moved_ones_do_not() {
         let free = step_unknowns(PaperFormulation::Screw).miss;
         // dξ = 0.01 (1, 1, 1; 1, 1, 1) about the axis z: v·ω = 0.01 (0.01 + 0.01 + 1.01), |ω|² = 2e-4 + 1.01².
-        assert!(
-            (free.pitch_m - 0.0103).abs() < 1e-15 && (free.length - (1.0203_f64.sqrt() - 1.0)).abs() < 1e-15
-        );
+        assert!((free.pitch_m - 0.0103).abs() < 1e-15 && (free.length - (1.0203_f64.sqrt() - 1.0)).abs() < 1e-15);
         let moved = step_unknowns(PaperFormulation::Adjoint);
         assert!(moved.miss.pitch_m < 1e-15 && moved.miss.length < 1e-15);
         // The recorded screws are those of the estimate, except for rounding.

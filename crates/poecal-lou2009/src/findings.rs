@@ -77,14 +77,8 @@ pub struct ElbowRun {
 
 impl ElbowRun {
     /// True if it is the run without noise of a formulation.
-    pub(crate) fn is_exact(
-        &self,
-        formulation: PaperFormulation,
-        seen: MeasurementKind,
-        offsets: bool,
-    ) -> bool {
-        (self.formulation, self.measurement, self.offsets_in_truth, self.noise)
-            == (formulation, seen, offsets, false)
+    pub(crate) fn is_exact(&self, formulation: PaperFormulation, seen: MeasurementKind, offsets: bool) -> bool {
+        (self.formulation, self.measurement, self.offsets_in_truth, self.noise) == (formulation, seen, offsets, false)
     }
 }
 

@@ -196,8 +196,7 @@ mod tests {
 
     #[test]
     fn the_usual_formulation_is_that_of_the_library() {
-        let usual =
-            to_formulation(PaperFormulation::Adjoint, PaperResidual::Tool, Method::LevenbergMarquardt);
+        let usual = to_formulation(PaperFormulation::Adjoint, PaperResidual::Tool, Method::LevenbergMarquardt);
         assert_eq!(usual, calibration::Formulation::default());
     }
 }

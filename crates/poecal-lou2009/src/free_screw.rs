@@ -53,11 +53,8 @@ impl ScrewModel for FreeScrew {
             JointKind::Revolute => {
                 let (sine, versine) = (joint.sine, 1.0 - joint.cosine_or_value);
                 let arm = chain.target.translation - joint.origin;
-                let directions = [
-                    joint.x * sine + joint.y * versine,
-                    joint.y * sine - joint.x * versine,
-                    joint.z * joint.value,
-                ];
+                let directions =
+                    [joint.x * sine + joint.y * versine, joint.y * sine - joint.x * versine, joint.z * joint.value];
                 for (k, direction) in directions.into_iter().enumerate() {
                     out[k] = (direction, zero);
                     out[3 + k] = (direction.cross(&arm), direction);

@@ -24,8 +24,8 @@ pub mod tables;
 
 pub use breakdown::{Breakdown, BreakdownEntry, breakdown};
 pub use findings::{
-    Basin, Claim, Efficiency, ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow,
-    Reproduction, ScrewRow,
+    Basin, Claim, Efficiency, ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow, Reproduction,
+    ScrewRow,
 };
 
 pub use formulation::{Method, PaperFormulation, PaperResidual, to_formulation};

@@ -97,12 +97,7 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
 ///
 /// The free screw of a prismatic joint has 3 columns instead of 6: its ω is zero, "and thus left out of the calibration".
 #[must_use]
-pub fn jacobian(
-    robot: &Robot,
-    values: &[f64],
-    formulation: PaperFormulation,
-    seen: MeasurementKind,
-) -> DMatrix<f64> {
+pub fn jacobian(robot: &Robot, values: &[f64], formulation: PaperFormulation, seen: MeasurementKind) -> DMatrix<f64> {
     if !formulation.has_free_screws() {
         return adjoint_jacobian(robot, &AdjointErrors::zero(robot), values, formulation.has_offsets(), seen);
     }
@@ -188,12 +183,7 @@ pub fn stack_matrices(
 }
 
 /// Inverse metres per unit of each column's unknown: 1 for a length, `1 / length_m` for an angle or a direction.
-fn column_scales(
-    robot: &Robot,
-    formulation: PaperFormulation,
-    seen: MeasurementKind,
-    length_m: f64,
-) -> Vec<f64> {
+fn column_scales(robot: &Robot, formulation: PaperFormulation, seen: MeasurementKind, length_m: f64) -> Vec<f64> {
     let turn = 1.0 / length_m;
     let twist = [1.0, 1.0, 1.0, turn, turn, turn];
     let mut scales = Vec::new();

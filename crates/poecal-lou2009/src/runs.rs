@@ -118,8 +118,7 @@ fn measures(
     let most = if plan.noise { NOISY_FACTOR * NOISE[Quantity::Position] } else { REACHED_M };
     let matrix = matrix(session, estimate, plan.formulation);
     let error = ScrewError::from_estimates(estimate, &session.truth);
-    let equivalent =
-        ScrewError::from_estimates(&estimate.without_offsets(), &session.truth.without_offsets());
+    let equivalent = ScrewError::from_estimates(&estimate.without_offsets(), &session.truth.without_offsets());
     ElbowRun {
         formulation: plan.formulation,
         measurement: plan.seen,
@@ -140,10 +139,7 @@ fn measures(
         equivalent_screw_error_max_omega: equivalent.omega,
         constraint_miss_pitch_m: state.miss.pitch_m,
         constraint_miss_length: state.miss.length,
-        offset_error_max_deg: plan
-            .formulation
-            .has_offsets()
-            .then(|| offset_error_deg(estimate, &session.truth)),
+        offset_error_max_deg: plan.formulation.has_offsets().then(|| offset_error_deg(estimate, &session.truth)),
         trace,
     }
 }

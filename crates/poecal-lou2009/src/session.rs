@@ -30,13 +30,7 @@ pub(super) struct PaperSession {
 }
 
 impl PaperSession {
-    pub(super) fn new(
-        nominal: &Robot,
-        truth: Estimate,
-        seen: MeasurementKind,
-        count: usize,
-        seed: u64,
-    ) -> Self {
+    pub(super) fn new(nominal: &Robot, truth: Estimate, seen: MeasurementKind, count: usize, seed: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut configurations = |count: usize| -> Vec<f64> {
             (0..count).flat_map(|_| random_configuration(nominal, &mut generator)).collect()
@@ -63,8 +57,7 @@ impl PaperSession {
     pub(super) fn noisy_poses(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let measured = |pose: Pose| {
-            let position =
-                pose.translation + random::normal_vector(&mut generator) * sigma[Quantity::Position];
+            let position = pose.translation + random::normal_vector(&mut generator) * sigma[Quantity::Position];
             let turn = rotation::exp(&(random::normal_vector(&mut generator) * sigma[Quantity::Rotation]));
             Pose::new(turn * pose.rotation, position)
         };

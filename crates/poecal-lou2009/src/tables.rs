@@ -44,8 +44,7 @@ pub fn nominal_robot() -> Robot {
 #[must_use]
 pub fn prescribed_robot() -> Robot {
     // The axis along ω through its point nearest to the origin.
-    let screws =
-        printed_screws().map(|it| Screw::revolute(&it.w, &(it.w.cross(&it.v) / it.w.norm_squared())));
+    let screws = printed_screws().map(|it| Screw::revolute(&it.w, &(it.w.cross(&it.v) / it.w.norm_squared())));
     let mut robot = nominal_robot().with_screws(&screws);
     robot.home = Pose::from_translation(Vector3::from(PRESCRIBED_POINT_MM) / 1000.0);
     robot

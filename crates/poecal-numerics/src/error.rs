@@ -149,8 +149,7 @@ impl Error {
     /// The same error at a line and column (both from 1) of a file.
     #[must_use]
     pub fn at_position(mut self, path: impl AsRef<Path>, line: usize, column: usize) -> Self {
-        self.0.place =
-            Some(FilePosition { path: path.as_ref().to_path_buf(), line: Some(line), column: Some(column) });
+        self.0.place = Some(FilePosition { path: path.as_ref().to_path_buf(), line: Some(line), column: Some(column) });
         self
     }
 
@@ -163,8 +162,7 @@ impl Error {
     /// The same error at a line (from 1) of a file.
     #[must_use]
     pub fn at_line(mut self, path: impl AsRef<Path>, line: usize) -> Self {
-        self.0.place =
-            Some(FilePosition { path: path.as_ref().to_path_buf(), line: Some(line), column: None });
+        self.0.place = Some(FilePosition { path: path.as_ref().to_path_buf(), line: Some(line), column: None });
         self
     }
 
@@ -306,8 +304,7 @@ pub fn nearest_or_all(word: &str, candidates: &[&str]) -> String {
 
 /// The names, or the first of many, each as [`shorten_name`].
 pub fn first_few<T: AsRef<str>>(names: &[T]) -> String {
-    let first: Vec<Cow<'_, str>> =
-        names.iter().take(NAMES_LISTED).map(|name| shorten_name(name.as_ref())).collect();
+    let first: Vec<Cow<'_, str>> = names.iter().take(NAMES_LISTED).map(|name| shorten_name(name.as_ref())).collect();
     format!("{}{}", first.join(", "), if names.len() > NAMES_LISTED { ", …" } else { "" })
 }
 
@@ -331,11 +328,7 @@ fn with_names_shown(message: String) -> String {
 /// Words between two names stay unchanged; they have spaces, and are not as long as a name in a file may be.
 fn shown_unless_a_sentence(part: &str) -> Cow<'_, str> {
     const LONGEST_SENTENCE: usize = 4000;
-    if part.contains(' ') && part.len() <= LONGEST_SENTENCE {
-        Cow::Borrowed(part)
-    } else {
-        shorten_name(part)
-    }
+    if part.contains(' ') && part.len() <= LONGEST_SENTENCE { Cow::Borrowed(part) } else { shorten_name(part) }
 }
 
 /// Number of letters of a word that is short enough to be compared.
@@ -384,13 +377,9 @@ mod tests {
 
     #[test]
     fn swaps_of_neighbours_count_once() {
-        for (a, b, distance) in [
-            ("jiont1", "joint1", 1),
-            ("", "ab", 2),
-            ("X", "x", 0),
-            ("ca", "abc", 3),
-            ("kitten", "sitting", 3),
-        ] {
+        for (a, b, distance) in
+            [("jiont1", "joint1", 1), ("", "ab", 2), ("X", "x", 0), ("ca", "abc", 3), ("kitten", "sitting", 3)]
+        {
             assert_eq!(distance_within(a, b, 9), Some(distance), "{a} {b}");
         }
         assert_eq!(distance_within("kitten", "sitting", 2), None);
@@ -398,8 +387,7 @@ mod tests {
 
     #[test]
     fn an_error_is_one_line_whatever_it_quotes() {
-        let error =
-            Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at_position("a\nb.csv", 1, 2);
+        let error = Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at_position("a\nb.csv", 1, 2);
         assert_eq!(error.to_string(), r"a\u{a}b.csv:1:2: found `a\u{d}\u{a}\u{1b}[2J\u{2028}\u{9}µ`");
     }
 

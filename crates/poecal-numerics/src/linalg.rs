@@ -171,8 +171,7 @@ mod tests {
         let mut gram = vec![0.0; n * n];
         add_gram(&mut gram, n, &rows, 0);
         let truth = [1.0, -2.0, 0.5, 3.0, 0.25];
-        let residuals: Vec<f64> =
-            rows.chunks(n).map(|row| row.iter().zip(&truth).map(|(a, b)| a * b).sum()).collect();
+        let residuals: Vec<f64> = rows.chunks(n).map(|row| row.iter().zip(&truth).map(|(a, b)| a * b).sum()).collect();
         let mut gradient = vec![0.0; n];
         add_gradient(&mut gradient, &rows, &residuals);
         let factor = cholesky(&gram, n, 0.0).unwrap();
@@ -185,8 +184,7 @@ mod tests {
     fn the_inverse_is_that_of_solutions() {
         for level in lanes::simd_levels() {
             for n in 0..20 {
-                let rows: Vec<f64> =
-                    (0..n * (n + 3)).map(|k| ((k * k * 7 + 3 * k) % 17) as f64 - 8.0).collect();
+                let rows: Vec<f64> = (0..n * (n + 3)).map(|k| ((k * k * 7 + 3 * k) % 17) as f64 - 8.0).collect();
                 let mut gram = vec![0.0; n * n];
                 add_gram(&mut gram, n, &rows, 0);
                 let factor = lanes::cholesky(level, &gram, n, 1.0).unwrap();
@@ -222,8 +220,7 @@ mod tests {
             let mut gram = vec![0.0; n * n];
             add_gram(&mut gram, n, &rows, 0);
             let (values, vectors) = symmetric_eigen(&gram, n);
-            let rebuilt =
-                &vectors * DMatrix::from_diagonal(&nalgebra::DVector::from_vec(values)) * vectors.transpose();
+            let rebuilt = &vectors * DMatrix::from_diagonal(&nalgebra::DVector::from_vec(values)) * vectors.transpose();
             let exact = DMatrix::from_fn(n, n, |i, j| gram[i.min(j) * n + i.max(j)]);
             let error = (rebuilt - &exact).norm() / exact.norm();
             assert!(error < 1e-13, "{seed}: {error:e}");

@@ -35,12 +35,7 @@ pub struct NamedUnit {
     names: &'static str,
 }
 
-const fn unit(
-    symbol: &'static str,
-    of: Unit,
-    (factor, divisor): (f64, f64),
-    names: &'static str,
-) -> NamedUnit {
+const fn unit(symbol: &'static str, of: Unit, (factor, divisor): (f64, f64), names: &'static str) -> NamedUnit {
     NamedUnit { symbol, of, factor, divisor, names }
 }
 
@@ -114,8 +109,7 @@ impl NamedUnit {
             _ => String::new(),
         };
         let (words, symbols) = (words(of), symbols.join(", "));
-        ErrorKind::Unit
-            .refuse(format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}"))
+        ErrorKind::Unit.refuse(format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}"))
     }
 
     /// The unit of this symbol, of any quantity.
@@ -158,8 +152,7 @@ impl NamedUnit {
 
 /// Symbol for any name of a unit.
 fn plain_symbol(name: &str) -> &str {
-    let is_named =
-        |unit: &&NamedUnit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
+    let is_named = |unit: &&NamedUnit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
     match name {
         "µm" | "μm" => "um",
         "°" => "deg",

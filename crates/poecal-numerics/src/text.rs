@@ -119,13 +119,9 @@ mod tests {
 
     #[test]
     fn what_acts_is_written_as_its_number() {
-        let acting = [
-            '\0', '\t', '\n', '\r', '\u{1b}', '\u{7f}', '\u{9b}', '\u{61c}', '\u{200b}', '\u{200f}',
-            '\u{202e}',
-        ];
-        for c in
-            acting.into_iter().chain(['\u{2028}', '\u{2066}', '\u{2069}', '\u{feff}', '\u{ad}', '\u{e0041}'])
-        {
+        let acting =
+            ['\0', '\t', '\n', '\r', '\u{1b}', '\u{7f}', '\u{9b}', '\u{61c}', '\u{200b}', '\u{200f}', '\u{202e}'];
+        for c in acting.into_iter().chain(['\u{2028}', '\u{2066}', '\u{2069}', '\u{feff}', '\u{ad}', '\u{e0041}']) {
             let text = format!("a{c}b");
             assert_eq!(escape_invisible(&text), format!("a\\u{{{:x}}}b", u32::from(c)));
         }

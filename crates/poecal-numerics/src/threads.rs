@@ -36,10 +36,7 @@ pub fn map_parts_of<T: Send>(items: usize, count: usize, part: impl Fn(usize) ->
 }
 
 /// Results of two pieces of work, done in parallel if there are several threads.
-pub fn run_both<A: Send, B: Send>(
-    first: impl FnOnce() -> A + Send,
-    second: impl FnOnce() -> B + Send,
-) -> (A, B) {
+pub fn run_both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
     if rayon::current_num_threads() > 1 { rayon::join(first, second) } else { (first(), second()) }
 }
 
@@ -58,11 +55,7 @@ pub fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + 
 }
 
 /// Maps runs of `size` items, results in their order; `part` takes the index of the run.
-pub fn map_chunks<S: Sync, T: Send>(
-    items: &[S],
-    size: usize,
-    part: impl Fn(usize, &[S]) -> T + Sync + Send,
-) -> Vec<T> {
+pub fn map_chunks<S: Sync, T: Send>(items: &[S], size: usize, part: impl Fn(usize, &[S]) -> T + Sync + Send) -> Vec<T> {
     map_parts(items.len().div_ceil(size), |index| {
         part(index, &items[index * size..items.len().min((index + 1) * size)])
     })

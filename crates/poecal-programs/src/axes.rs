@@ -4,8 +4,7 @@ use poecal_model::robot::{JointKind, Robot};
 
 /// Reason why a target stays unchanged.
 pub(crate) const NO_EXTERNAL: &str = "it states no value of an external axis that the model has";
-pub(crate) const OTHER_EXTERNAL: &str =
-    "external axes are used that the model does not have: make it a joint target";
+pub(crate) const OTHER_EXTERNAL: &str = "external axes are used that the model does not have: make it a joint target";
 
 /// The readings of the robot, in the order in which languages count axes.
 #[derive(Clone, Debug, Default)]

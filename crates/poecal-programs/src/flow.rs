@@ -35,8 +35,7 @@ pub(crate) struct FlowState {
 impl FlowState {
     /// The state after one of two paths.
     fn join(self, other: FlowState) -> FlowState {
-        let same =
-            |one: ActiveFrame, other: ActiveFrame| if one == other { one } else { ActiveFrame::Unknown };
+        let same = |one: ActiveFrame, other: ActiveFrame| if one == other { one } else { ActiveFrame::Unknown };
         FlowState {
             last: if self.last == other.last { self.last } else { None },
             tool: same(self.tool, other.tool),
@@ -96,12 +95,7 @@ impl<'w, S> FlowWalk<'w, S> {
     }
 
     /// Follows `main`, then the routines that nothing in the file calls or that others may call, then the rest.
-    pub(crate) fn run(
-        &mut self,
-        main: &[FlowNode<S>],
-        called: &BTreeSet<String>,
-        open: &dyn Fn(&str) -> bool,
-    ) {
+    pub(crate) fn run(&mut self, main: &[FlowNode<S>], called: &BTreeSet<String>, open: &dyn Fn(&str) -> bool) {
         self.part(main, FlowState::default());
         for (name, body) in self.routines {
             if open(name) || !called.contains(name) {

@@ -94,11 +94,6 @@ mod tests {
         assert_eq!(Language::from_path("cell/weld.SRC"), Some(Language::Krl));
         assert_eq!(Language::from_path("rows.csv"), None);
         assert_eq!(Language::of_name("rows.csv").unwrap(), None);
-        assert!(
-            Language::of_name("cell/WELD.JBI")
-                .unwrap_err()
-                .to_string()
-                .contains("a program of Yaskawa (JBI)")
-        );
+        assert!(Language::of_name("cell/WELD.JBI").unwrap_err().to_string().contains("a program of Yaskawa (JBI)"));
     }
 }

@@ -43,12 +43,7 @@ pub use unchanged_statements::UnchangedStatement;
 /// # Errors
 /// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks nested more deeply than
 /// [`ResourceLimit::Nesting`]; [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it is larger than [`ResourceLimit::Program`].
-pub fn parse(
-    language: Language,
-    text: &[u8],
-    given: &StatedFrames,
-    axes: &ControllerAxes,
-) -> Result<ParsedProgram> {
+pub fn parse(language: Language, text: &[u8], given: &StatedFrames, axes: &ControllerAxes) -> Result<ParsedProgram> {
     ResourceLimit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
     scan::refuse_nested(text, rules(language))?;
     match language {
@@ -94,7 +89,6 @@ pub fn joint_targets(language: Language, text: &[u8], robot: &Robot) -> Result<J
         let target = parsed.targets.get(at)?;
         Some((target.line, target.name.clone(), target.scaled_numbers()))
     };
-    let poses =
-        parsed.targets.iter().filter(|it| it.meant != PoseMeaning::Joints).map(|it| it.line).collect();
+    let poses = parsed.targets.iter().filter(|it| it.meant != PoseMeaning::Joints).map(|it| it.line).collect();
     Ok(JointTargets { targets: order.into_iter().filter_map(of).collect(), poses, listed: parsed.listed })
 }

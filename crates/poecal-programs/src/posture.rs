@@ -176,10 +176,7 @@ mod tests {
         );
         // With the arm leaning back, the elbow is bent as before.
         let back = at([-50.0, -80.0, 40.0, 10.0, 30.0, 0.0]);
-        assert_eq!(
-            (back.is_front, back.is_before_arm, back.is_arm_up),
-            (Some(false), Some(true), Some(true))
-        );
+        assert_eq!((back.is_front, back.is_before_arm, back.is_arm_up), (Some(false), Some(true), Some(true)));
         assert_eq!(at([0.0; 6]).is_wrist_positive, None);
         // Its fifth axis is to the left, so that positive angles bend the hand down.
         assert!(!posture.is_down_negative());

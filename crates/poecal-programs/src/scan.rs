@@ -117,8 +117,7 @@ impl Iterator for Scanner<'_> {
         loop {
             let byte = *self.text.get(self.at)?;
             let start = self.at;
-            let token =
-                |kind: TokenKind, end: usize, line: usize| Some(Token { kind, range: start..end, line });
+            let token = |kind: TokenKind, end: usize, line: usize| Some(Token { kind, range: start..end, line });
             match byte {
                 b'\n' | b'\r' => {
                     let both = self.text[self.at..].starts_with(b"\r\n");
@@ -190,9 +189,7 @@ pub(crate) fn refuse_nested(text: &[u8], rules: &LexicalRules) -> Result<()> {
 
 /// The number at the beginning of a text: its length, value and number of decimals.
 fn number(text: &[u8]) -> Option<(usize, f64, usize)> {
-    let digits = |from: usize| {
-        text.get(from..).unwrap_or_default().iter().take_while(|it| it.is_ascii_digit()).count()
-    };
+    let digits = |from: usize| text.get(from..).unwrap_or_default().iter().take_while(|it| it.is_ascii_digit()).count();
     let whole = digits(0);
     let mut end = whole;
     let mut decimals = 0;
@@ -254,8 +251,7 @@ pub(crate) fn parts(tokens: &[Token]) -> Vec<&[Token]> {
 
 /// Tokens between separators outside of brackets; `None` if brackets do not match.
 pub(crate) fn cut(tokens: &[Token], separator: u8) -> Option<Vec<&[Token]>> {
-    let deeper =
-        |depth: usize, it: &Token| (depth + usize::from(it.opens())).checked_sub(usize::from(it.closes()));
+    let deeper = |depth: usize, it: &Token| (depth + usize::from(it.opens())).checked_sub(usize::from(it.closes()));
     (tokens.iter().try_fold(0, deeper) == Some(0)).then(|| pieces(tokens, separator))
 }
 

@@ -7,11 +7,7 @@ use poecal_arm::Arm;
 pub(crate) fn axes(arm: &Arm, q: &[f64]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let tip = arm.forward_kinematics(q).translation;
     let columns = arm.jacobian(q);
-    columns
-        .iter()
-        .take(arm.joints())
-        .map(|(v, w)| (tip + w.cross(v) / w.norm_squared().max(1e-12), *w))
-        .collect()
+    columns.iter().take(arm.joints()).map(|(v, w)| (tip + w.cross(v) / w.norm_squared().max(1e-12), *w)).collect()
 }
 
 /// The point nearest to the last three of six axes: the intersection of the wrist's axes.
@@ -30,6 +26,5 @@ pub(crate) fn wrist_centre(axes: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vect
     let [x, y, z] = columns;
     let determinant = x.dot(&y.cross(&z));
     let by = |a: &Vector3<f64>, b: &Vector3<f64>, c: &Vector3<f64>| a.dot(&b.cross(c)) / determinant;
-    (determinant.abs() > 1e-9)
-        .then(|| Vector3::new(by(&right, &y, &z), by(&x, &right, &z), by(&x, &y, &right)))
+    (determinant.abs() > 1e-9).then(|| Vector3::new(by(&right, &y, &z), by(&x, &right, &z), by(&x, &y, &right)))
 }

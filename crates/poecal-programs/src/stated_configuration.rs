@@ -23,11 +23,7 @@ pub enum StatedConfiguration {
 
 impl From<Status> for StatedConfiguration {
     fn from(status: Status) -> Self {
-        if status == Status::default() {
-            StatedConfiguration::Nothing
-        } else {
-            StatedConfiguration::Krl(status)
-        }
+        if status == Status::default() { StatedConfiguration::Nothing } else { StatedConfiguration::Krl(status) }
     }
 }
 

@@ -103,9 +103,8 @@ impl StatedFrames {
             Language::Rapid | Language::Krl | Language::Fanuc => (1_f64.to_radians(), "degrees"),
         };
         let Some(numbers) = numbers(words) else {
-            return ErrorKind::Option.refuse(format!(
-                "found --start {words}, expected the readings of all joints, J1,J2,… in {unit}"
-            ));
+            return ErrorKind::Option
+                .refuse(format!("found --start {words}, expected the readings of all joints, J1,J2,… in {unit}"));
         };
         self.start = Some(numbers.iter().map(|it| it * scale).collect());
         Ok(())
@@ -154,9 +153,6 @@ mod tests {
     #[test]
     fn the_flange_of_a_taught_robot_is_behind_its_tool() {
         let tool = Pose::from_translation([0.0, 0.0, 0.1].into());
-        assert_eq!(
-            StatedFrames::default().with_taught_frames(&Pose::identity(), &tool).flange.translation.z,
-            -0.1
-        );
+        assert_eq!(StatedFrames::default().with_taught_frames(&Pose::identity(), &tool).flange.translation.z, -0.1);
     }
 }

@@ -50,10 +50,7 @@ named! {
 }
 
 /// Refuses keywords that a class does not have, as `poecal._keywords` does for functions.
-pub(crate) fn refuse_unknown<T: PyTypeInfo>(
-    py: Python<'_>,
-    unknown: Option<&Bound<'_, PyDict>>,
-) -> PyResult<()> {
+pub(crate) fn refuse_unknown<T: PyTypeInfo>(py: Python<'_>, unknown: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
     let Some((name, _)) = unknown.and_then(|it| it.iter().next()) else { return Ok(()) };
     let refused = py.import("poecal._keywords")?.call_method1("unknown", (py.get_type::<T>(), name))?;
     Err(PyErr::from_value(refused))
@@ -66,8 +63,7 @@ pub(crate) fn unexpected_error(name: &str, value: &Bound<'_, PyAny>, expected: i
 
 /// Description of a value, in words.
 pub(crate) fn describe_value(value: &Bound<'_, PyAny>) -> String {
-    let type_name =
-        || value.get_type().name().map_or_else(|_| "something".to_owned(), |name| name.to_string());
+    let type_name = || value.get_type().name().map_or_else(|_| "something".to_owned(), |name| name.to_string());
     if value.is_none() {
         return "None".to_owned();
     }
@@ -130,15 +126,13 @@ impl<'a, 'py> Argument<'a, 'py> for String {
 
 impl<'a, 'py> Argument<'a, 'py> for PathBuf {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let path: PathBuf = value
-            .extract()
-            .map_err(|_| unexpected_error(name, value, "a path: a text, or an os.PathLike"))?;
+        let path: PathBuf =
+            value.extract().map_err(|_| unexpected_error(name, value, "a path: a text, or an os.PathLike"))?;
         if path.as_os_str().is_empty() {
             return Err(argument(name, "found an empty text, expected a path"));
         }
         if path.to_str().is_some_and(is_content) {
-            let expected =
-                "the path of a file that holds it; a robot model's text is read by poecal.Robot.from_text";
+            let expected = "the path of a file that holds it; a robot model's text is read by poecal.Robot.from_text";
             return Err(unexpected_error(name, value, expected));
         }
         Ok(path)
@@ -153,10 +147,8 @@ impl<'a, 'py, T: Argument<'a, 'py>> Argument<'a, 'py> for Option<T> {
 
 impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let entries: Vec<Bound<'py, PyAny>> =
-            value.extract().map_err(|_| unexpected_error(name, value, "a list"))?;
-        let entry =
-            |(at, entry): (usize, &Bound<'py, PyAny>)| T::from_argument(entry, &format!("{name}[{at}]"));
+        let entries: Vec<Bound<'py, PyAny>> = value.extract().map_err(|_| unexpected_error(name, value, "a list"))?;
+        let entry = |(at, entry): (usize, &Bound<'py, PyAny>)| T::from_argument(entry, &format!("{name}[{at}]"));
         entries.iter().enumerate().map(entry).collect()
     }
 }
@@ -244,9 +236,7 @@ impl<'a, 'py> Argument<'a, 'py> for PriorTolerance {
         match value.cast::<PyString>().ok().map(|text| text.to_string_lossy().into_owned()) {
             Some(text) if text == "auto" => Ok(PriorTolerance::Auto),
             Some(text) if text.to_ascii_lowercase().ends_with(".cfg") => Ok(PriorTolerance::Of(text.into())),
-            Some(text) if text.contains(',') => {
-                <(f64, f64)>::from_argument(value, name).map(PriorTolerance::Given)
-            }
+            Some(text) if text.contains(',') => <(f64, f64)>::from_argument(value, name).map(PriorTolerance::Given),
             Some(_) => Err(unexpected_error(
                 name,
                 value,
@@ -261,9 +251,7 @@ impl<'a, 'py> Argument<'a, 'py> for PriorTolerance {
 impl<'a, 'py> Argument<'a, 'py> for GravityDirection {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyString>() {
-            return String::from_argument(value, name)?
-                .parse()
-                .map_err(|message: String| argument(name, message));
+            return String::from_argument(value, name)?.parse().map_err(|message: String| argument(name, message));
         }
         crate::words::direction(<[f64; 3]>::from_argument(value, name)?).map(GravityDirection::Known)
     }
@@ -277,11 +265,7 @@ impl<'a, 'py> Argument<'a, 'py> for Corrections {
             let sizes = BTreeMap::<String, f64>::from_argument(value, name)?;
             sizes.iter().map(|(group, size)| format!("{group}={size:e}")).collect::<Vec<_>>().join(",")
         } else {
-            return Err(unexpected_error(
-                name,
-                value,
-                "a text, or a dict of groups of terms and their sizes",
-            ));
+            return Err(unexpected_error(name, value, "a text, or a dict of groups of terms and their sizes"));
         };
         words.parse().map_err(|message: String| argument(name, message))
     }
@@ -326,8 +310,7 @@ impl<'a, 'py> Argument<'a, 'py> for RepairLimits {
 
 impl<'a, 'py> Argument<'a, 'py> for Record {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let entries =
-            value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, "a dict of keys and texts"))?;
+        let entries = value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, "a dict of keys and texts"))?;
         let entry = |(key, text): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
             let key = String::from_argument(&key, &format!("{name}, a key"))?;
             let text = String::from_argument(&text, &format!("{name}[\"{key}\"]"))?;
@@ -344,8 +327,7 @@ pub(crate) struct NamedLinks(pub(crate) Vec<(String, String)>);
 
 impl<'a, 'py> Argument<'a, 'py> for NamedLinks {
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        let entries =
-            value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, "a dict of names and links"))?;
+        let entries = value.cast::<PyDict>().map_err(|_| unexpected_error(name, value, "a dict of names and links"))?;
         let entry = |(key, link): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
             let key = String::from_argument(&key, &format!("{name}, a key"))?;
             let link = String::from_argument(&link, &format!("{name}[\"{key}\"]"))?;

@@ -2,8 +2,7 @@
 
 use nalgebra::Matrix3;
 use numpy::{
-    PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArray,
-    PyUntypedArrayMethods as _,
+    PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods as _,
 };
 use poecal_arm::lie::Pose;
 use pyo3::prelude::*;
@@ -73,12 +72,7 @@ impl NumberArray {
     }
 
     /// Refuses another shape than `wanted`, in which `None` is any length.
-    pub(crate) fn require_shape(
-        self,
-        wanted: &[Option<usize>],
-        name: &str,
-        expected: &str,
-    ) -> PyResult<Self> {
+    pub(crate) fn require_shape(self, wanted: &[Option<usize>], name: &str, expected: &str) -> PyResult<Self> {
         let fits = |(&found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|wanted| found == wanted);
         if self.shape.len() == wanted.len() && self.shape.iter().zip(wanted).all(fits) {
             return Ok(self);
@@ -109,11 +103,8 @@ fn unmask<'py>(value: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResul
     let masked = value.py().import("numpy.ma")?;
     let class = masked.getattr("MaskedArray")?;
     let is_masked = |it: &Bound<'py, PyAny>| it.is_instance(&class);
-    let entries = if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
-        Some(value)
-    } else {
-        None
-    };
+    let entries =
+        if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() { Some(value) } else { None };
     let mut has_masked = is_masked(value)?;
     for entry in entries.into_iter().flat_map(|it| it.try_iter()).flatten() {
         has_masked |= is_masked(&entry?)?;
@@ -121,28 +112,20 @@ fn unmask<'py>(value: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResul
     if !has_masked {
         return Ok(None);
     }
-    let wrong =
-        |cause: PyErr| argument(name, format!("found no array of numbers ({cause}), expected {expected}"));
+    let wrong = |cause: PyErr| argument(name, format!("found no array of numbers ({cause}), expected {expected}"));
     let array = masked.call_method1("asarray", (value,)).map_err(wrong)?;
     if !masked.call_method1("is_masked", (&array,))?.is_truthy()? {
         return array.getattr("data").map(Some);
     }
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if !["f", "i", "u"].contains(&kind.as_str()) {
-        return Err(argument(
-            name,
-            format!("found values of type {}, expected {expected}", array.getattr("dtype")?),
-        ));
+        return Err(argument(name, format!("found values of type {}, expected {expected}", array.getattr("dtype")?)));
     }
     array.call_method1("astype", ("float64",))?.call_method1("filled", (f64::NAN,)).map(Some)
 }
 
 /// `numpy.ascontiguousarray(value, dtype=float)`, refused if that would be lossy or ambiguous.
-fn convert_array<'py>(
-    value: &Bound<'py, PyAny>,
-    name: &str,
-    expected: &str,
-) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+fn convert_array<'py>(value: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = value.py().import("numpy")?;
     let array = numpy
         .call_method1("asarray", (value,))
@@ -204,11 +187,7 @@ pub(crate) fn pose_arrays<'py>(py: Python<'py>, poses: &[Pose]) -> PyResult<Boun
 }
 
 /// Rows of `columns` numbers as an array of shape (m, columns).
-pub(crate) fn table<'py>(
-    py: Python<'py>,
-    numbers: Vec<f64>,
-    columns: usize,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
+pub(crate) fn table<'py>(py: Python<'py>, numbers: Vec<f64>, columns: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let rows = numbers.len() / columns.max(1);
     PyArray1::from_vec(py, numbers).reshape([rows, columns])
 }
@@ -223,10 +202,7 @@ pub(crate) struct JointArray {
 
 impl JointArray {
     /// Configurations of the argument `joints`.
-    pub(crate) fn from_argument(
-        value: &Bound<'_, PyAny>,
-        robot: &poecal_model::robot::Robot,
-    ) -> PyResult<Self> {
+    pub(crate) fn from_argument(value: &Bound<'_, PyAny>, robot: &poecal_model::robot::Robot) -> PyResult<Self> {
         let names = robot.reading_names();
         let n = names.len();
         let expected = format!(

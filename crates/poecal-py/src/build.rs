@@ -113,10 +113,7 @@ pub(crate) fn from_screws(
         let kind = if w.iter().all(|part| *part == 0.0) { "prismatic" } else { "revolute" };
         let name = quote_toml(name);
         // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{{ name = {name}, type = \"{kind}\", screw = {{ v = {v:?}, w = {w:?} }}{limits} }},"
-        );
+        let _ = writeln!(text, "{{ name = {name}, type = \"{kind}\", screw = {{ v = {v:?}, w = {w:?} }}{limits} }},");
     }
     text.push_str("]\n");
     naming.model(&(text + &pose_table("home", &pose(home, "home")?)))

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use poecal_calibrate::{
-    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, CalibrationStage, Corrections,
-    RepairLimits, RepairedSession, calibrate_repairing, settle_sets,
+    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, CalibrationStage, Corrections, RepairLimits,
+    RepairedSession, calibrate_repairing, settle_sets,
 };
 use poecal_cli::words;
 use poecal_formats::abb::AbbCalibration;
@@ -141,8 +141,7 @@ pub(crate) fn calibrate(
     let robot = paths::robot(robot)?;
     let measurements = paths::measurements(measurements, "measurements", &robot)?;
     let validate = paths::optional_measurements(validate, "validate", &robot)?;
-    let (robot, measurements, validate) =
-        (robot.get(), measurements.get(), validate.as_ref().map(Bound::get));
+    let (robot, measurements, validate) = (robot.get(), measurements.get(), validate.as_ref().map(Bound::get));
     let usual = CalibrationOptions::default();
     let (formulation, residual) = formulation_from_words(formulation, residual, method)?;
     let options = CalibrationOptions {
@@ -177,16 +176,10 @@ fn noise_by_quantity([position, rotation]: [Option<f64>; 2]) -> ByQuantity<Optio
 }
 
 /// The rows of a calibration: its measurements, or those that remained.
-fn kept_rows(
-    measurements: &Measurements,
-    repaired: Option<Dataset>,
-    data: Cow<'_, Dataset>,
-) -> Arc<MeasurementFile> {
+fn kept_rows(measurements: &Measurements, repaired: Option<Dataset>, data: Cow<'_, Dataset>) -> Arc<MeasurementFile> {
     match (repaired, data) {
         (None, Cow::Borrowed(_)) => Arc::clone(&measurements.file),
-        (Some(data), _) | (None, Cow::Owned(data)) => {
-            Arc::new(MeasurementFile { data, ..Default::default() })
-        }
+        (Some(data), _) | (None, Cow::Owned(data)) => Arc::new(MeasurementFile { data, ..Default::default() }),
     }
 }
 
@@ -204,10 +197,7 @@ fn formulation_from_words(
 }
 
 /// Limits for the model of this name.
-pub(crate) fn accept_limits(
-    accept: Option<AcceptanceLimits>,
-    model: &str,
-) -> PyResult<Option<AcceptanceLimits>> {
+pub(crate) fn accept_limits(accept: Option<AcceptanceLimits>, model: &str) -> PyResult<Option<AcceptanceLimits>> {
     let model = one_of("accept_model", model, words::MODEL)?;
     let limits = accept.map(|it| it.limits).unwrap_or_default();
     // The default may have been written out, which requests nothing.
@@ -291,10 +281,7 @@ fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: PaperResidual) -> 
         return Ok(());
     }
     let words = residual.word();
-    crate::warn(
-        py,
-        &[format!("residual {words} has no effect: it is about measured frames, and there are none")],
-    )
+    crate::warn(py, &[format!("residual {words} has no effect: it is about measured frames, and there are none")])
 }
 
 /// Inputs, as in `calibration.json`.

@@ -274,9 +274,7 @@ impl Calibration {
         let Ok(other) = other.cast::<Calibration>() else { return false };
         let other = other.get();
         let residuals = |it: &Calibration| it.rows().ok().map(Rows::text);
-        self.file() == other.file()
-            && self.nominal.model == other.nominal.model
-            && residuals(self) == residuals(other)
+        self.file() == other.file() && self.nominal.model == other.nominal.model && residuals(self) == residuals(other)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {

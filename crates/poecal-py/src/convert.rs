@@ -55,8 +55,7 @@ pub(crate) fn export(
     let mut model = Model::clone(&robot.model);
     if let Some(offset) = offset {
         let mut notes = Vec::new();
-        model.robot =
-            into_screws(&model.robot, &offsets(&offset, &model.robot, &mut notes)?).map_err(raise)?;
+        model.robot = into_screws(&model.robot, &offsets(&offset, &model.robot, &mut notes)?).map_err(raise)?;
         crate::warn(py, &notes)?;
     }
     let text = py.detach(|| converted(&model, form)).map_err(raise)?;
@@ -78,8 +77,7 @@ fn offsets(
         if !names.contains(&name.as_str()) {
             let hint = nearest_word(name, names.iter().copied())
                 .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-            let message =
-                format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "));
+            let message = format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "));
             return Err(argument("offset", message));
         }
         let followers = robot.followers(name);

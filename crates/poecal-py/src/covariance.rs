@@ -38,8 +38,7 @@ impl Covariance {
         let at = |(i, a): (usize, f64), (j, b): (usize, f64)| {
             found.covariance.get(i * n + j).map_or(f64::NAN, |value| value / (a * b))
         };
-        let matrix =
-            places.iter().flat_map(|&a| places.iter().map(move |&b| (a, b))).map(|(a, b)| at(a, b)).collect();
+        let matrix = places.iter().flat_map(|&a| places.iter().map(move |&b| (a, b))).map(|(a, b)| at(a, b)).collect();
         Ok(Covariance { unknowns, matrix, axes: found.estimate.base_from_axis })
     }
 }

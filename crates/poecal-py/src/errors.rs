@@ -54,9 +54,7 @@ pub(crate) fn argument(name: &str, message: impl std::fmt::Display) -> PyErr {
 
 /// An exception of the class `name` of `poecal._errors`.
 fn of_class(name: &str, message: &str) -> PyErr {
-    let made = |py: Python<'_>| {
-        Ok(PyErr::from_value(py.import("poecal._errors")?.getattr(name)?.call1((message,))?))
-    };
+    let made = |py: Python<'_>| Ok(PyErr::from_value(py.import("poecal._errors")?.getattr(name)?.call1((message,))?));
     Python::attach(|py| made(py).unwrap_or_else(|failure: PyErr| failure))
 }
 
@@ -71,10 +69,7 @@ pub(crate) fn no_row(row: isize, count: usize) -> PyErr {
 
 /// The exception for a Python package that is not installed.
 pub(crate) fn no_package(name: &str) -> PyErr {
-    of_class(
-        "PackageError",
-        &format!("found no package `{name}`, expected it to be installed: pip install {name}"),
-    )
+    of_class("PackageError", &format!("found no package `{name}`, expected it to be installed: pip install {name}"))
 }
 
 /// Names of the program's options in Python: `--held-out` is `held_out`. Commands of other programs between backticks, as `rosbags-convert --src

@@ -21,10 +21,8 @@ fn stack_poses(value: &Bound<'_, PyAny>, name: &str, count: Option<usize>) -> Py
     let expected = format!("shape ({many}, 4, 4): a pose in each row, metres");
     let numbers = NumberArray::finite_of(value, name, &[count, Some(4), Some(4)], &expected)?;
     let rows = numbers.values.chunks_exact(16).enumerate();
-    rows.map(|(row, numbers)| {
-        pose_of(numbers).map_err(|message| argument(name, format!("row {row}: {message}")))
-    })
-    .collect()
+    rows.map(|(row, numbers)| pose_of(numbers).map_err(|message| argument(name, format!("row {row}: {message}"))))
+        .collect()
 }
 
 /// Names of rows, one for each.
@@ -101,8 +99,7 @@ pub(crate) fn hand_eye(
     };
     let poses = PosePairs { flange: arm.into(), target: seen.into(), names, ..PosePairs::default() };
     let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();
-    let found =
-        py.detach(|| solved::hand_eye(&poses.flange, &poses.target, &options, &name)).map_err(raise)?;
+    let found = py.detach(|| solved::hand_eye(&poses.flange, &poses.target, &options, &name)).map_err(raise)?;
     let result = HandEyeResult { found: &found, poses: &poses, names: &frames, command: "", arm: None };
     let json = result.to_text().map_err(raise)?;
     let answer = report::hand_eye_answer(&result);

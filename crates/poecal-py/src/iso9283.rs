@@ -71,25 +71,20 @@ pub(crate) fn iso9283(
     #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<Findings> {
     if certificate && report.is_none() {
-        return Err(argument(
-            "certificate",
-            "found it without report, expected the file of the page beside it",
-        ));
+        return Err(argument("certificate", "found it without report, expected the file of the page beside it"));
     }
     let robot = robot.map(paths::robot).transpose()?;
     let model = robot.as_ref().map(|robot| &*robot.get().model);
     let frame = one_of("device_frame", device_frame, words::TEST_FRAME)?;
-    let limits = accept.map_or(Ok(Vec::new()), |words| {
-        words.split(',').map(str::parse).collect::<Result<Vec<FigureLimit>, _>>()
-    });
+    let limits = accept
+        .map_or(Ok(Vec::new()), |words| words.split(',').map(str::parse).collect::<Result<Vec<FigureLimit>, _>>());
     let limits = limits.map_err(|error| argument("accept", error.message()))?;
     let [sigma_position_m, sigma_rotation_rad] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let mut reading = ReadOptions::default();
     units.map_or(Ok(()), |units| reading.state_units(units)).map_err(raise)?;
     let options = TestOptions { reading, frame, sigma_position_m, sigma_rotation_rad };
     let paths: Vec<&Path> = std::iter::once(&measurements).chain(&earlier).map(PathBuf::as_path).collect();
-    let page =
-        report.map(|path| reserved_file(py, &path, ExistingFiles::from_switch(force), &paths)).transpose()?;
+    let page = report.map(|path| reserved_file(py, &path, ExistingFiles::from_switch(force), &paths)).transpose()?;
     let record = record.unwrap_or_default();
     let robot = model.map(|model| (model.path.clone(), BTreeMap::new()));
     let stated = StatedTest { limits, record, robot, command: None };

@@ -58,8 +58,7 @@ fn warn(py: Python<'_>, sentences: &[String]) -> PyResult<()> {
 fn level_of_caller(py: Python<'_>) -> PyResult<usize> {
     let mut frame = py.import("sys")?.call_method0("_getframe")?;
     let mut level = 1;
-    let is_ours =
-        |frame: &Bound<'_, PyAny>| frame.getattr("f_globals")?.get_item("__name__")?.eq("poecal._keywords");
+    let is_ours = |frame: &Bound<'_, PyAny>| frame.getattr("f_globals")?.get_item("__name__")?.eq("poecal._keywords");
     while !frame.is_none() && is_ours(&frame).unwrap_or(false) {
         frame = frame.getattr("f_back")?;
         level += 1;
@@ -123,8 +122,7 @@ mod _poecal {
     /// computed. Keywords that a function does not have are answered with the nearest one.
     #[pymodule_init]
     fn begin(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let refused =
-            |sentence| crate::errors::raise(poecal_numerics::error::ErrorKind::Option.error(sentence));
+        let refused = |sentence| crate::errors::raise(poecal_numerics::error::ErrorKind::Option.error(sentence));
         poecal_fit::problem::stated_level().map(drop).map_err(refused)?;
         module.py().import("poecal._keywords")?.call_method1("answer", (module,)).map(drop)
     }
@@ -149,10 +147,8 @@ mod _poecal {
     #[pyfunction]
     fn set_threads(#[pyo3(from_py_with = crate::arguments::count)] count: usize) -> PyResult<()> {
         if !(1..=poecal_numerics::threads::MOST_THREADS).contains(&count) {
-            let message = format!(
-                "found {count}, expected a number from 1 to {}",
-                poecal_numerics::threads::MOST_THREADS
-            );
+            let message =
+                format!("found {count}, expected a number from 1 to {}", poecal_numerics::threads::MOST_THREADS);
             return Err(crate::errors::argument("count", message));
         }
         rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {

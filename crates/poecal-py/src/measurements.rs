@@ -60,9 +60,8 @@ impl Measurements {
     /// Measured positions in the device's frame, shape (m, 3), metres.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let position = |row: &poecal_model::measurement::Observation| {
-            <[f64; 3]>::from(row.measurement.pose().translation)
-        };
+        let position =
+            |row: &poecal_model::measurement::Observation| <[f64; 3]>::from(row.measurement.pose().translation);
         table(py, self.data().observations.iter().flat_map(position).collect(), 3)
     }
 

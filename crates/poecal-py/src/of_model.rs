@@ -32,11 +32,7 @@ impl ModelSelector {
     }
 
     /// Its error, selected from those of all models; NaN without such a model.
-    pub(crate) fn select_error(
-        self,
-        [nominal, registered, calibrated]: [f64; 3],
-        corrected: Option<f64>,
-    ) -> f64 {
+    pub(crate) fn select_error(self, [nominal, registered, calibrated]: [f64; 3], corrected: Option<f64>) -> f64 {
         match self {
             ModelSelector::Nominal => nominal,
             ModelSelector::Registered => registered,

@@ -8,11 +8,7 @@ use serde::de::DeserializeOwned;
 use crate::errors::argument;
 
 /// Result of `__reduce__`: the function of this name, and its argument, the state as bytes. Numbers read back exactly, to the last digit.
-pub(crate) fn reduce<'py>(
-    py: Python<'py>,
-    function: &str,
-    state: &impl Serialize,
-) -> PyResult<Bound<'py, PyTuple>> {
+pub(crate) fn reduce<'py>(py: Python<'py>, function: &str, state: &impl Serialize) -> PyResult<Bound<'py, PyTuple>> {
     let bytes = serde_json::to_vec(state)
         .map_err(|error| argument("pickle", format!("the object cannot be written: {error}")))?;
     let function = py.import("poecal._poecal")?.getattr(function)?;

@@ -166,8 +166,7 @@ pub(crate) fn plan<'py>(
     };
     let rows = PlanningRows { count, held_out_count, candidates, keep_rows, replace_rows };
     let aim = PlanningGoal { kind, criterion, workspace, workspace_box_mm, targets, target_offset_mm };
-    let room =
-        RobotEnvironment { margin_deg_mm, keep_out_mm, floor_height_mm, separation_deg, self_collision };
+    let room = RobotEnvironment { margin_deg_mm, keep_out_mm, floor_height_mm, separation_deg, self_collision };
     let of_target = (target_half_angle_deg, target_normal);
     let view = PlanView { device_mm, device_half_angle_deg, device_aim_mm, distance_mm, of_target };
     let session = PlanSession { rows, aim, believe, room, view, stop_s, seed };

@@ -6,8 +6,7 @@ use std::path::Path;
 use numpy::{PyArray1, PyArrayMethods as _};
 use poecal_arm::lie::Pose;
 use poecal_compensate::{
-    ChangeOptions, Compensation, Inverse, Kinematics, Language, MaxCorrection, ProgramOptions,
-    compensate_file,
+    ChangeOptions, Compensation, Inverse, Kinematics, Language, MaxCorrection, ProgramOptions, compensate_file,
 };
 use poecal_model::robot::Robot;
 use poecal_model::robot::{ControllerMap, JointKind};
@@ -35,8 +34,7 @@ pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResu
         return Err(argument("factors", format!("found something else, {}", expected())));
     };
     for (name, value) in given {
-        let index =
-            robot.factors.iter().position(|it| name.extract::<String>().is_ok_and(|name| name == it.name));
+        let index = robot.factors.iter().position(|it| name.extract::<String>().is_ok_and(|name| name == it.name));
         match (index, value.extract::<f64>()) {
             (Some(index), Ok(value)) if value.is_finite() => values[index] = value,
             _ => return Err(argument("factors", format!("found {name}: {value}, {}", expected()))),
@@ -61,10 +59,7 @@ fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResu
 
 /// Mapping from the counts of a calibration's controller to the model's readings, if arrays contain counts; `None` if they contain the model's
 /// readings, or if both are equal.
-pub(crate) fn find_controller_map(
-    file: &CalibrationFile,
-    readings: Option<&str>,
-) -> PyResult<Option<ControllerMap>> {
+pub(crate) fn find_controller_map(file: &CalibrationFile, readings: Option<&str>) -> PyResult<Option<ControllerMap>> {
     let is_counted = match readings {
         None => None,
         Some(word) => Some(choose_word("readings", word, &[("controller", true), ("model", false)])?),
@@ -85,11 +80,7 @@ pub(crate) fn find_controller_map(
 }
 
 /// The model's readings for rows of counted ones; numbers beyond those of the joints stay.
-pub(crate) fn to_model<'r>(
-    counting: Option<&ControllerMap>,
-    rows: &'r [f64],
-    width: usize,
-) -> Cow<'r, [f64]> {
+pub(crate) fn to_model<'r>(counting: Option<&ControllerMap>, rows: &'r [f64], width: usize) -> Cow<'r, [f64]> {
     let Some(counting) = counting else { return Cow::Borrowed(rows) };
     let row = |row: &[f64]| {
         let mut made = counting.readings(row);
@@ -100,12 +91,7 @@ pub(crate) fn to_model<'r>(
 }
 
 /// Rows of numbers as an array of the argument's number of dimensions.
-fn rows<'py>(
-    py: Python<'py>,
-    numbers: Vec<f64>,
-    columns: usize,
-    is_single: bool,
-) -> PyResult<Bound<'py, PyAny>> {
+fn rows<'py>(py: Python<'py>, numbers: Vec<f64>, columns: usize, is_single: bool) -> PyResult<Bound<'py, PyAny>> {
     if is_single {
         PyArray1::from_vec(py, numbers).into_bound_py_any(py)
     } else {
@@ -215,8 +201,7 @@ pub(crate) fn program<'py>(
     let (text, summary) = py.detach(|| compensate_file(path, robots, factors, options)).map_err(raise)?;
     crate::warn(py, &summary.changes.warnings())?;
     let (changes, table) = (&summary.changes, summary.text(&slides(robots.1)));
-    let found =
-        Findings::new("Compensation", table, changes.answer(), &summary)?.with_warnings(&changes.warnings());
+    let found = Findings::new("Compensation", table, changes.answer(), &summary)?.with_warnings(&changes.warnings());
     Ok((PyBytes::new(py, &text), found.into_pyobject(py)?))
 }
 
@@ -233,9 +218,8 @@ fn targets(value: &Bound<'_, PyAny>) -> PyResult<(Vec<Pose>, bool)> {
     let wanted: &[Option<usize>] = if is_single { &[Some(4), Some(4)] } else { &[None, Some(4), Some(4)] };
     let numbers = numbers.require_shape(wanted, "poses", expected)?;
     let pose = |(row, it): (usize, &[f64])| {
-        pose_of(it).map_err(|message| {
-            argument("poses", if is_single { message } else { format!("row {row}: {message}") })
-        })
+        pose_of(it)
+            .map_err(|message| argument("poses", if is_single { message } else { format!("row {row}: {message}") }))
     };
     let poses = numbers.values.chunks_exact(16).enumerate().map(pose).collect::<PyResult<Vec<Pose>>>()?;
     Ok((poses, is_single))
@@ -254,10 +238,8 @@ pub(crate) fn inverse<'py>(
     let inverse = robot.inverse(factors).map_err(raise)?;
     let robot = &robot.model.robot;
     let n = robot.joint_reading_names().len();
-    let held = held
-        .filter(|it| !it.is_none())
-        .map(|it| held_reading(it, robot, &inverse, targets.len()))
-        .transpose()?;
+    let held =
+        held.filter(|it| !it.is_none()).map(|it| held_reading(it, robot, &inverse, targets.len())).transpose()?;
     let near = near.filter(|it| !it.is_none());
     if near.is_some() && held.is_some() {
         let message = "found a reading that is held, and near, expected one of them: near has the nearest configuration with all joints free";
@@ -276,10 +258,7 @@ pub(crate) fn inverse<'py>(
             None => inverse.branches(target, &start, limits),
         };
         let found: Vec<Vec<Vec<f64>>> = py.detach(|| inverse.of_many(&targets, find));
-        let arrays = found
-            .into_iter()
-            .map(|branches| table(py, branches.concat(), n))
-            .collect::<PyResult<Vec<_>>>()?;
+        let arrays = found.into_iter().map(|branches| table(py, branches.concat(), n)).collect::<PyResult<Vec<_>>>()?;
         return match (is_single, arrays.first()) {
             (true, Some(first)) => first.into_bound_py_any(py),
             _ => PyList::new(py, arrays)?.into_bound_py_any(py),
@@ -288,8 +267,7 @@ pub(crate) fn inverse<'py>(
     let (near, one) = configurations(near, "near", robot)?;
     if !one && near.rows() != targets.len() {
         let (found, poses) = (near.rows(), targets.len());
-        let message =
-            format!("found {found} configurations for {poses} poses, expected one for each, or one for all");
+        let message = format!("found {found} configurations for {poses} poses, expected one for each, or one for all");
         return Err(argument("near", message));
     }
     let found = py.detach(|| {
@@ -328,10 +306,8 @@ fn held_reading(
         let message = "found a reading that is held, expected none: only an arm of seven turning joints has one more than it needs";
         return Err(argument("held", message.to_owned()));
     }
-    let expected = format!(
-        "expected a mapping from one of {} to its value (rad), or to one for each pose",
-        names.join(", ")
-    );
+    let expected =
+        format!("expected a mapping from one of {} to its value (rad), or to one for each pose", names.join(", "));
     let wrong = || argument("held", format!("found something else, {expected}"));
     let given = given.cast::<PyDict>().map_err(|_| wrong())?;
     let (name, value) = given.iter().next().filter(|_| given.len() == 1).ok_or_else(wrong)?;

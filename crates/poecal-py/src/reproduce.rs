@@ -53,9 +53,8 @@ pub(crate) fn reproduce(
     let words = [("lou2009", PaperExperiment::Lou2009), ("breakdown", PaperExperiment::Breakdown)];
     let experiment = choose_word("experiment", experiment, &words)?;
     let options = experiments::ReproductionOptions { trials: trials as usize, starts: starts as usize, seed };
-    let reserved = |folder: &PathBuf| {
-        reserved_folder(py, folder, Contents::Reproduction, ExistingFiles::from_switch(force), &[])
-    };
+    let reserved =
+        |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, ExistingFiles::from_switch(force), &[]);
     let place = out.as_ref().map(reserved).transpose()?;
     let work = || {
         let (json, words, answer, files) = match experiment {
@@ -68,10 +67,8 @@ pub(crate) fn reproduce(
             }
             PaperExperiment::Breakdown => {
                 let found = experiments::breakdown(&options)?;
-                let answer = format!(
-                    "errors by share of gross errors, from {} sessions of {} rows",
-                    found.sessions, found.rows
-                );
+                let answer =
+                    format!("errors by share of gross errors, from {} sessions of {} rows", found.sessions, found.rows);
                 let files = reproduced::breakdown_files(&found)?;
                 (report::json(&found)?, reproduced::breakdown_table(&found), answer, files)
             }

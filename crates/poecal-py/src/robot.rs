@@ -138,12 +138,8 @@ impl Robot {
     /// Screws in the base frame at zero joint values, shape (n, 6): linear part (metres), then angular part.
     #[getter]
     fn screws<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let numbers: Vec<f64> = self
-            .robot()
-            .joints
-            .iter()
-            .flat_map(|joint| <[f64; 6]>::from(joint.screw.twist().to_vector()))
-            .collect();
+        let numbers: Vec<f64> =
+            self.robot().joints.iter().flat_map(|joint| <[f64; 6]>::from(joint.screw.twist().to_vector())).collect();
         table(py, numbers, 6)
     }
 
@@ -158,9 +154,7 @@ impl Robot {
     #[getter]
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let none = [f64::NEG_INFINITY, f64::INFINITY];
-        let of = |joint: &poecal_model::robot::Joint| {
-            joint.limits.map_or(none, |limits| [limits.lower, limits.upper])
-        };
+        let of = |joint: &poecal_model::robot::Joint| joint.limits.map_or(none, |limits| [limits.lower, limits.upper]);
         table(py, self.robot().joints.iter().flat_map(of).collect(), 2)
     }
 

@@ -24,12 +24,9 @@ pub(crate) fn choose_rows(key: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<
     let entries: Vec<Bound<'_, PyAny>> = key.extract().map_err(|_| unexpected_error("rows", key, KEYS))?;
     let mask: Option<Vec<bool>> = entries.iter().map(|entry| entry.extract().ok()).collect();
     match mask {
-        Some(mask) if mask.len() == count => {
-            Ok((0..count).filter(|&row| mask.get(row) == Some(&true)).collect())
-        }
+        Some(mask) if mask.len() == count => Ok((0..count).filter(|&row| mask.get(row) == Some(&true)).collect()),
         Some(mask) if !mask.is_empty() => {
-            let message =
-                format!("found a mask of {} entries, expected {count}, one for each row", mask.len());
+            let message = format!("found a mask of {} entries, expected {count}, one for each row", mask.len());
             Err(argument("rows", message))
         }
         _ => entries
@@ -68,11 +65,8 @@ pub(crate) fn part(data: &Dataset, rows: &[usize]) -> PyResult<Dataset> {
     }
     let [targets, stations] = seen;
     let named = |index: usize| data.targets.get(index).and_then(Option::as_deref);
-    let targets: Vec<usize> = targets
-        .iter()
-        .enumerate()
-        .map(|(at, seen)| if *seen { found.target_index(named(at)) } else { 0 })
-        .collect();
+    let targets: Vec<usize> =
+        targets.iter().enumerate().map(|(at, seen)| if *seen { found.target_index(named(at)) } else { 0 }).collect();
     let station = |index: usize| data.stations.get(index).and_then(Option::as_deref);
     let is_named = stations.iter().enumerate().any(|(at, seen)| *seen && station(at).is_some());
     let stations: Vec<usize> = stations

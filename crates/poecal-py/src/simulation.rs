@@ -214,8 +214,7 @@ fn with_terms(command: String, simulation: &simulated::Simulation) -> String {
         return command;
     }
     let used = TermGroup::ALL.into_iter().filter(|&group| simulation.terms[group] > 0.0);
-    let used: Vec<String> =
-        used.map(|group| format!("{}={:e}", group.name(), simulation.terms[group])).collect();
+    let used: Vec<String> = used.map(|group| format!("{}={:e}", group.name(), simulation.terms[group])).collect();
     let [x, y, z]: [f64; 3] = simulation.gravity.into();
     let command = command.trim_end_matches(')');
     format!("{command}, terms=\"{}\", gravity=({x:?}, {y:?}, {z:?}))", used.join(","))

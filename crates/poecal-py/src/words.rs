@@ -20,8 +20,8 @@ pub(crate) fn choose_word<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) 
         return Ok(*meaning);
     }
     let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
-    let hint = nearest_word(word, known.iter().copied())
-        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let hint =
+        nearest_word(word, known.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     Err(argument(name, format!("found `{word}`, expected one of {}{hint}", known.join(", "))))
 }
 
@@ -36,8 +36,7 @@ pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
 }
 
 pub(crate) fn kind(word: &str) -> PyResult<SessionKind> {
-    let words: Vec<(&str, SessionKind)> =
-        SessionKind::all().into_iter().map(|kind| (kind.word(), kind)).collect();
+    let words: Vec<(&str, SessionKind)> = SessionKind::all().into_iter().map(|kind| (kind.word(), kind)).collect();
     choose_word("kind", word, &words)
 }
 

@@ -6,11 +6,7 @@ use poecal_calibrate::{Acceptance, AcceptedLimit, AcceptedModel};
 /// The decision and each limit, as labelled lines of a table.
 pub(crate) fn lines(out: &mut String, acceptance: &Acceptance) {
     let decision = acceptance.decision.words();
-    line(
-        out,
-        "acceptance",
-        &format!("{decision}: the {} model, by {}", model(acceptance), acceptance.by.words()),
-    );
+    line(out, "acceptance", &format!("{decision}: the {} model, by {}", model(acceptance), acceptance.by.words()));
     for limit in &acceptance.limits {
         line(out, "", &format!("{}: {}", limit.decision.words(), words(limit)));
     }

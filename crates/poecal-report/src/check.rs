@@ -163,18 +163,13 @@ impl Check {
         line(&mut out, "robot", &self.robot_words);
         lines(&mut out, "joints", model.joints.iter().map(JointCheck::words));
         line(&mut out, "tip at zero", &pose_words(&model.base_from_tip_at_zero));
-        let words =
-            |it: &TargetCheck| format!("{}: {} in the tip frame", it.name, pose_words(&it.tip_from_target));
+        let words = |it: &TargetCheck| format!("{}: {} in the tip frame", it.name, pose_words(&it.tip_from_target));
         let targets = model.targets.iter().map(words);
         lines(&mut out, "targets", targets.chain(model.mounted.iter().map(MountCheck::words)));
         lines(&mut out, "instruments", model.instruments.iter().map(MountCheck::words));
         if !model.masses.is_empty() {
             let all: f64 = model.masses.iter().map(|mass| mass.mass_kg).sum();
-            line(
-                &mut out,
-                "masses",
-                &format!("{} of the moving links, {all:.1} kg in all", model.masses.len()),
-            );
+            line(&mut out, "masses", &format!("{} of the moving links, {all:.1} kg in all", model.masses.len()));
         }
         if let Some(sight) = &self.sight {
             lines(&mut out, "ways", sight.words());
@@ -253,31 +248,21 @@ impl JointCheck {
     fn words(&self) -> String {
         let direction = format_triple(self.direction, 1.0, 6);
         let (place, factor, unit) = match self.point_m {
-            Some(point) => (
-                format!("about {direction} through {} mm", format_triple(point, 1e3, 3)),
-                1f64.to_degrees(),
-                "deg",
-            ),
+            Some(point) => {
+                (format!("about {direction} through {} mm", format_triple(point, 1e3, 3)), 1f64.to_degrees(), "deg")
+            }
             None => (format!("along {direction}"), 1e3, "mm"),
         };
         let limits = match self.limits {
             Some([lower, upper]) => {
-                format!(
-                    "from {} to {} {unit}",
-                    format_short(lower * factor, 3),
-                    format_short(upper * factor, 3)
-                )
+                format!("from {} to {} {unit}", format_short(lower * factor, 3), format_short(upper * factor, 3))
             }
             None => "no limits".to_owned(),
         };
         let mut words = format!("{}: {} {place}, {limits}", self.name, self.kind);
         if self.reading != self.name || self.multiplier != 1.0 || self.offset != 0.0 {
             let offset = format_short(self.offset * factor, 6);
-            let _ = write!(
-                words,
-                "; value = {} * reading of {} + {offset} {unit}",
-                self.multiplier, self.reading
-            );
+            let _ = write!(words, "; value = {} * reading of {} + {offset} {unit}", self.multiplier, self.reading);
         }
         if let Some(on) = &self.on {
             let _ = write!(words, "; on {}", body_words(on));
@@ -304,8 +289,7 @@ impl SetCounts {
     fn words(self) -> String {
         let SetCounts { fit, held_out, unstated } = self;
         if fit + held_out == 0 {
-            return "not stated: `poecal calibrate` chooses what it holds out (--held-out, --seed)"
-                .to_owned();
+            return "not stated: `poecal calibrate` chooses what it holds out (--held-out, --seed)".to_owned();
         }
         let rest = if unstated > 0 { format!(", {unstated} not stated (fitted)") } else { String::new() };
         format!("{fit} to fit, {held_out} held out{rest}")
@@ -358,12 +342,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     };
     row("column", "read from", "unit", "values");
     for column in &file.columns {
-        row(
-            &escape_invisible(&column.name),
-            &column_words(column),
-            &unit_words(column),
-            &range_words(column),
-        );
+        row(&escape_invisible(&column.name), &column_words(column), &unit_words(column), &range_words(column));
     }
     if !file.ignored.is_empty() {
         line(out, "ignored", &first_few(&file.ignored));

@@ -97,12 +97,7 @@ struct ReadingEntry {
 
 impl From<ChiSquare> for TestEntry {
     fn from(test: ChiSquare) -> Self {
-        TestEntry {
-            chi_square: test.value,
-            freedom: test.freedom,
-            limit: test.limit,
-            changed: test.is_change(),
-        }
+        TestEntry { chi_square: test.value, freedom: test.freedom, limit: test.limit, changed: test.is_change() }
     }
 }
 
@@ -131,8 +126,7 @@ impl SideEntry {
 
 impl SideEntry {
     fn words(&self) -> String {
-        let expected =
-            self.expected_mm.map_or_else(String::new, |it| format!(": expected error {} mm", number(it)));
+        let expected = self.expected_mm.map_or_else(String::new, |it| format!(": expected error {} mm", number(it)));
         format!("{}{expected}", self.calibration)
     }
 }
@@ -171,12 +165,7 @@ impl ComparisonReport {
                 rms_mm: 1e3 * found.tip.rms_m,
                 max_mm: 1e3 * found.tip.max_m,
                 rms_deg: found.tip.rms_rad.to_degrees(),
-                max_at: found
-                    .tip
-                    .max_at
-                    .iter()
-                    .map(|(name, value)| ReadingEntry::new(&robot, name, *value))
-                    .collect(),
+                max_at: found.tip.max_at.iter().map(|(name, value)| ReadingEntry::new(&robot, name, *value)).collect(),
                 max_place_mm: (1e3 * found.tip.max_place).into(),
                 limit_mm: found.tip.limit_m.map(|it| 1e3 * it),
                 limit_is_stated: found.tip.limit_is_stated,
@@ -231,8 +220,7 @@ impl ComparisonReport {
         match (self.moved, self.tip.limit_mm) {
             (Some(moves), Some(limit)) => {
                 let answer = if moves { "no longer good" } else { "still good" };
-                let which =
-                    if self.tip.limit_is_stated { "" } else { ", the expected errors of both together" };
+                let which = if self.tip.limit_is_stated { "" } else { ", the expected errors of both together" };
                 format!("{answer}: {moved} (limit {} mm{which})", number(limit))
             }
             _ => format!("unknown: {moved}, and a calibration has no expected error: state a --limit"),
@@ -245,10 +233,8 @@ impl ComparisonReport {
             return "unknown: a calibration has no uncertainty, so that noise and change are not distinguishable"
                 .to_owned();
         };
-        let numbers = format!(
-            "χ² {:.1} of {} degrees of freedom, noise up to {:.1}",
-            test.chi_square, test.freedom, test.limit
-        );
+        let numbers =
+            format!("χ² {:.1} of {} degrees of freedom, noise up to {:.1}", test.chi_square, test.freedom, test.limit);
         match self.changed {
             Some(true) if self.changed_joints.is_empty() => {
                 format!("changed significantly, in no single joint ({numbers})")
@@ -266,11 +252,7 @@ impl ComparisonReport {
         let _ = writeln!(out, "{title:<42}{:>13}{:>13}", "first", "second");
         let mut names: Vec<&str> = one.rms.iter().map(|it| it.model.as_str()).collect();
         names.extend(
-            other
-                .rms
-                .iter()
-                .map(|it| it.model.as_str())
-                .filter(|it| !one.rms.iter().any(|own| own.model == *it)),
+            other.rms.iter().map(|it| it.model.as_str()).filter(|it| !one.rms.iter().any(|own| own.model == *it)),
         );
         let of = |side: &SideEntry, name: &str| {
             let is_same = (side.quantity, side.unit) == (one.quantity, one.unit);

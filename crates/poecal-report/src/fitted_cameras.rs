@@ -11,9 +11,7 @@ const FEW: usize = 12;
 pub(crate) fn found_words(file: &CalibrationFile) -> Vec<String> {
     let all = file.pictures.as_ref().map_or(&[][..], |pictures| &pictures.found);
     let groups = all.chunk_by(|a, b| of_what(a) == of_what(b));
-    groups
-        .filter_map(|group| Some(format!("{}: {}", of_what(group.first()?).join(" of "), words(group))))
-        .collect()
+    groups.filter_map(|group| Some(format!("{}: {}", of_what(group.first()?).join(" of "), words(group)))).collect()
 }
 
 /// Kind and name of a number's subject.
@@ -37,12 +35,7 @@ fn words(group: &[PictureNumber]) -> String {
         let own = it.name.rsplit('.').next().unwrap_or_default();
         let digits = if it.unit == "px" { 1 } else { 4 };
         let unit = if it.unit.is_empty() { String::new() } else { format!(" {}", it.unit) };
-        format!(
-            "{own} {:.digits$} -> {:.digits$} ± {:.digits$}{unit}",
-            it.given,
-            it.found,
-            2.0 * it.deviation
-        )
+        format!("{own} {:.digits$} -> {:.digits$} ± {:.digits$}{unit}", it.given, it.found, 2.0 * it.deviation)
     };
     group.iter().map(one).collect::<Vec<_>>().join(", ")
 }

@@ -42,12 +42,10 @@ impl PriorUse {
     fn from_rows(rows: &[&LedgerRow]) -> Option<Self> {
         let done: Vec<&LedgerRow> = rows.iter().copied().filter(|row| row.verdict.is_some()).collect();
         let first = done.iter().position(|row| row.by_prior)?;
-        let (own, others): (Vec<&LedgerRow>, Vec<&LedgerRow>) =
-            done[first..].iter().partition(|row| row.by_prior);
+        let (own, others): (Vec<&LedgerRow>, Vec<&LedgerRow>) = done[first..].iter().partition(|row| row.by_prior);
         let error = |rows: &[&LedgerRow]| typical_value(rows.iter().filter_map(|row| row.error_rms));
-        let share = |rows: &[&LedgerRow]| {
-            typical_value(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default()
-        };
+        let share =
+            |rows: &[&LedgerRow]| typical_value(rows.iter().filter_map(|row| row.prior_share())).unwrap_or_default();
         Some(PriorUse {
             robots: own.len(),
             share: share(&own),
@@ -135,8 +133,7 @@ impl FleetLine {
         let found = steps(&all);
         let is_station = |step: &FigureStep| {
             let near = found.iter().filter(|it| it.from.abs_diff(step.from) <= TOGETHER).count();
-            near as f64 > MOST_FIGURES * all.len() as f64
-                || of_reference.iter().any(|it| it.series == step.series)
+            near as f64 > MOST_FIGURES * all.len() as f64 || of_reference.iter().any(|it| it.series == step.series)
         };
         let figures: Vec<LineFigure> = all.iter().filter_map(figure).collect();
         Ok(FleetLine {
@@ -163,10 +160,8 @@ impl FleetLine {
             let _ = write!(out, ",{},{}", cell(&name), cell(&format!("sigma_{name}")));
         }
         out.push_str(",reason\n");
-        let by_robot: Vec<BTreeMap<&str, &FigureValue>> = all
-            .iter()
-            .map(|it| it.values.iter().map(|value| (value.serial.as_str(), value)).collect())
-            .collect();
+        let by_robot: Vec<BTreeMap<&str, &FigureValue>> =
+            all.iter().map(|it| it.values.iter().map(|value| (value.serial.as_str(), value)).collect()).collect();
         for row in &self.rows {
             let text = |it: &Option<String>| cell(it.as_deref().unwrap_or_default()).into_owned();
             let number = |it: Option<f64>| it.map_or_else(String::new, |it| it.to_string());
@@ -203,11 +198,8 @@ impl FleetLine {
         let mut out = String::new();
         let rate = 100.0 * self.first_passed as f64 / self.first.max(1) as f64;
         let robots = self.rows.iter().map(|row| &row.serial).collect::<BTreeSet<_>>().len();
-        let visits = if self.rows.len() > robots {
-            format!("; {} measurements in all", self.rows.len())
-        } else {
-            String::new()
-        };
+        let visits =
+            if self.rows.len() > robots { format!("; {} measurements in all", self.rows.len()) } else { String::new() };
         let _ = writeln!(
             out,
             "robots      {robots}, {} of {} passed at their first measurement ({rate:.1} %){visits}",
@@ -225,11 +217,7 @@ impl FleetLine {
             let _ = writeln!(out, "prior       {}", prior.words());
         }
         for it in self.outliers.iter().take(LISTED) {
-            let _ = writeln!(
-                out,
-                "outlier     {}: {}, {:.1} spreads of the line",
-                it.serial, it.series, it.spreads
-            );
+            let _ = writeln!(out, "outlier     {}: {}, {:.1} spreads of the line", it.serial, it.series, it.spreads);
         }
         for (step, is_station) in &self.steps {
             let of = if *is_station { " (the station's)" } else { "" };
@@ -290,21 +278,13 @@ pub(crate) fn series(rows: &[&LedgerRow]) -> Vec<FigureSeries> {
                    unit: &'static str,
                    is_size: bool,
                    value: FigureValue| {
-        let empty = || FigureSeries {
-            name: name.clone(),
-            joint: joint.map(str::to_owned),
-            unit,
-            is_size,
-            values: Vec::new(),
-        };
+        let empty =
+            || FigureSeries { name: name.clone(), joint: joint.map(str::to_owned), unit, is_size, values: Vec::new() };
         found.entry((order, name.clone())).or_insert_with(empty).values.push(value);
     };
     for row in rows.iter().filter(|row| row.verdict.is_some()) {
-        let one = |value: f64, sigma: Option<f64>| FigureValue {
-            serial: key(row),
-            value,
-            sigma: sigma.unwrap_or_default(),
-        };
+        let one =
+            |value: f64, sigma: Option<f64>| FigureValue { serial: key(row), value, sigma: sigma.unwrap_or_default() };
         if let Some(error) = row.error_rms {
             add(0, "error".to_owned(), None, "mm", true, one(error, None));
         }

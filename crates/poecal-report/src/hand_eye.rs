@@ -48,10 +48,7 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
     let mut out = String::new();
     let mut say = |label: &str, text: &str| lines(&mut out, label, text.lines());
     let reasons: String = found.reasons.iter().map(|it| format!("\n{it}")).collect();
-    say(
-        "verdict",
-        &format!("{}{reasons}", with_bound(found.level, "camera", found.camera_frame().bound95_m)),
-    );
+    say("verdict", &format!("{}{reasons}", with_bound(found.level, "camera", found.camera_frame().bound95_m)));
     let [camera, target] = result.frames();
     for (label, (frame, placed)) in [("camera", &camera), ("target", &target)] {
         say(label, &place(frame, placed));
@@ -89,9 +86,7 @@ fn lens_words(lens: &FoundLens) -> String {
         let decimals = decimals(it.deviation);
         format!("{} {:.decimals$} ± {:.decimals$}", lens_number_name(it), it.found, it.deviation)
     };
-    let of = |unit: &str| -> Vec<String> {
-        lens.numbers.iter().filter(|it| it.unit == unit).map(number).collect()
-    };
+    let of = |unit: &str| -> Vec<String> { lens.numbers.iter().filter(|it| it.unit == unit).map(number).collect() };
     let bend = of("mm");
     let bend = if bend.is_empty() { String::new() } else { format!("; board: {} mm", bend.join(", ")) };
     format!("{} px; {}{bend} (± standard deviation)", of("px").join(", "), of("").join(", "))
@@ -139,12 +134,7 @@ fn noise(found: &HandEye) -> String {
     let [across, along, tilt, turn] = found.noise;
     let about = found.noise_about;
     let point = if about.norm() > 0.0 {
-        format!(
-            ", of the point ({:.0}, {:.0}, {:.0}) mm of the target",
-            1e3 * about.x,
-            1e3 * about.y,
-            1e3 * about.z
-        )
+        format!(", of the point ({:.0}, {:.0}, {:.0}) mm of the target", 1e3 * about.x, 1e3 * about.y, 1e3 * about.z)
     } else {
         String::new()
     };

@@ -133,11 +133,7 @@ impl Identify {
         let files = self.files.join(", ");
         match &self.pictures {
             Some(found) => {
-                line(
-                    &mut out,
-                    "measured",
-                    &format!("{} pictures, {} corners: {files}", found.count, found.corners),
-                );
+                line(&mut out, "measured", &format!("{} pictures, {} corners: {files}", found.count, found.corners));
                 let (shift, turn) = (number(found.common_shift_mm), number(found.common_turn_deg));
                 let noise = format!(
                     "{} px of each coordinate of a corner, and {shift} mm and {turn} deg that the corners of a picture share, as is usual before a calibration",
@@ -207,9 +203,7 @@ fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
         let words = "undetermined: everything, since the residual is as large as the effect of the unknowns";
         line(out, "", words);
     } else {
-        for (label, directions) in
-            [("undetermined", &found.unidentifiable), ("weakly determined", &found.weak)]
-        {
+        for (label, directions) in [("undetermined", &found.unidentifiable), ("weakly determined", &found.weak)] {
             for direction in directions.iter().take(MOST_DIRECTIONS) {
                 let count = match direction.directions {
                     1 => String::new(),
@@ -229,10 +223,7 @@ fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
 }
 
 /// Sampled part of each joint's range.
-pub(crate) fn coverage_table<'a>(
-    out: &mut String,
-    joints: impl Iterator<Item = (&'a JointCoverage, JointKind)>,
-) {
+pub(crate) fn coverage_table<'a>(out: &mut String, joints: impl Iterator<Item = (&'a JointCoverage, JointKind)>) {
     // Writing to a String cannot fail.
     let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
     let mut is_of_a_turn = false;

@@ -117,8 +117,7 @@ impl TestPlan {
 
     /// Cube or plane, and its sides that are not zero, millimetres.
     fn shape(&self) -> (&'static str, String) {
-        let sides: Vec<String> =
-            self.sides_mm.iter().filter(|it| **it > 1e-3).map(|it| format!("{it:.0}")).collect();
+        let sides: Vec<String> = self.sides_mm.iter().filter(|it| **it > 1e-3).map(|it| format!("{it:.0}")).collect();
         match sides.as_slice() {
             [across, up] => ("plane", format!("{across} × {up}")),
             _ => ("cube", sides.first().cloned().unwrap_or_default()),
@@ -146,14 +145,9 @@ impl TestPlan {
             let [x, y, z] = it.position_mm;
             line(&mut out, &it.pose, &format!("({x:.1}, {y:.1}, {z:.1}) mm, the tip"));
         }
-        let order =
-            format!("{} cycles of P5, P4, P3, P2, P1, after warm-up, at one speed and load", self.cycles);
+        let order = format!("{} cycles of P5, P4, P3, P2, P1, after warm-up, at one speed and load", self.cycles);
         line(&mut out, "order", &order);
-        line(
-            &mut out,
-            "not checked",
-            "collisions, and the paths between the poses: see both at low speed first",
-        );
+        line(&mut out, "not checked", "collisions, and the paths between the poses: see both at low speed first");
         out
     }
 }
@@ -188,8 +182,7 @@ pub(crate) const FURTHER: [(&str, &str, &str, FigureValue); 3] = [
 pub(crate) fn groups(test: &TestResult) -> Vec<FigureGroup<'_>> {
     let all = FigureName::ALL.into_iter().flat_map(|it| [(it.0, it.1, "mm"), (it.0, it.1, "deg")]);
     let group = |(name, symbol, unit): (FigureName, &str, &str)| {
-        let is_own =
-            |it: &&FigureEntry| it.unit == unit && it.figure.trim_end_matches(['a', 'b', 'c']) == symbol;
+        let is_own = |it: &&FigureEntry| it.unit == unit && it.figure.trim_end_matches(['a', 'b', 'c']) == symbol;
         let own = test.figures.iter().enumerate().filter(|(_, it)| is_own(it)).collect();
         FigureGroup { name, own }
     };
@@ -231,13 +224,11 @@ impl<'a> FigureGroup<'a> {
 
 /// AP and RP of positions at each pose.
 fn poses(out: &mut String, test: &TestResult) {
-    let of =
-        |symbol: &'static str| test.figures.iter().filter(move |it| it.figure == symbol && it.unit == "mm");
+    let of = |symbol: &'static str| test.figures.iter().filter(move |it| it.figure == symbol && it.unit == "mm");
     out.push('\n');
     row(out, "position, mm", WIDTHS, ["AP", "from", "to", "RP", "from", "to"]);
     for (accuracy, repeatability) in of("AP").zip(of("RP")) {
-        let cells =
-            [accuracy.measured, repeatability.measured].map(|it| [it.found, it.from, it.to].map(number));
+        let cells = [accuracy.measured, repeatability.measured].map(|it| [it.found, it.from, it.to].map(number));
         row(out, &format!("  {}", accuracy.pose), WIDTHS, cells.concat());
     }
     for (words, value) in [("before, mm", FURTHER[1].3), ("corrected, mm", FURTHER[2].3)] {

@@ -3,8 +3,7 @@
 use super::acceptance;
 use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, pictures_words, row};
 use poecal_calibrate::{
-    Gain, Improvement, Judgement, Level, ModelAccuracy, QuantityCoverage, RefittedPart, RepeatScatter,
-    Statistic,
+    Gain, Improvement, Judgement, Level, ModelAccuracy, QuantityCoverage, RefittedPart, RepeatScatter, Statistic,
 };
 use poecal_model::measurement::Quantity;
 
@@ -77,11 +76,8 @@ pub(crate) fn confirmed_words(level: Option<Level>) -> &'static str {
 fn repeats_words(found: &RepeatScatter) -> String {
     let (least, most, unit) = (number(found.smallest), number(found.largest), found.quantity.unit().symbol());
     let range = if found.poses > 1 { format!("{least} to {most}") } else { most };
-    let poses = if found.poses == 1 {
-        "one configuration".to_owned()
-    } else {
-        format!("{} configurations", found.poses)
-    };
+    let poses =
+        if found.poses == 1 { "one configuration".to_owned() } else { format!("{} configurations", found.poses) };
     format!("scatter by {range} {unit} (repeatability of {poses}, {} rows)", found.rows)
 }
 
@@ -178,12 +174,7 @@ pub(crate) fn judged_models(judgement: &Judgement) -> Vec<(&'static str, &ModelA
     nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).chain(corrected).collect()
 }
 
-fn block(
-    out: &mut String,
-    title: &str,
-    judgement: &Judgement,
-    of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
-) {
+fn block(out: &mut String, title: &str, judgement: &Judgement, of: impl Fn(&ModelAccuracy) -> Option<Statistic>) {
     let columns = judged_models(judgement);
     row(out, title, WIDTHS, columns.iter().map(|(head, _)| head));
     for (label, _, value) in STATISTICS {

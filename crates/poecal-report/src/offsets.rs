@@ -102,11 +102,7 @@ impl Offsets {
                 position_mm: home.position_m * 1e3,
                 rotation_deg: home.rotation_rad.to_degrees(),
             }),
-            undetermined: joints
-                .iter()
-                .filter(|joint| !joint.determined)
-                .map(|joint| joint.joint.clone())
-                .collect(),
+            undetermined: joints.iter().filter(|joint| !joint.determined).map(|joint| joint.joint.clone()).collect(),
             joints,
             predictions: PredictionsEntry {
                 configurations: explanation.options.configurations,
@@ -141,8 +137,7 @@ impl Offsets {
         line(&mut out, "base", &self.base.words());
         line(&mut out, "tip", &self.tip.words());
         // Writing to a String cannot fail.
-        let _ =
-            writeln!(out, "\n{:<21}{:>14}{:>22}{:>15}", "add to joint", "offset", "remaining: tilt", "shift");
+        let _ = writeln!(out, "\n{:<21}{:>14}{:>22}{:>15}", "add to joint", "offset", "remaining: tilt", "shift");
         for joint in &self.joints {
             let _ = writeln!(out, "{}", joint.row());
         }
@@ -199,10 +194,7 @@ impl JointOffsetEntry {
         let mark = if self.determined { "" } else { "*" };
         let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", format_fixed(shift)));
         let tilt = format_fixed(self.tilt_deg);
-        format!(
-            "  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}",
-            escape_invisible(&self.joint)
-        )
+        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", escape_invisible(&self.joint))
     }
 }
 

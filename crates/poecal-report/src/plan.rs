@@ -50,8 +50,7 @@ pub struct PlanReport {
 }
 
 /// Columns of the table of errors by number of configurations. Removable is the part of an error that more rows would remove.
-pub(crate) const CURVE_HEAD: [&str; 5] =
-    ["configurations", "calibrated", "removable", "corrected", "removable"];
+pub(crate) const CURVE_HEAD: [&str; 5] = ["configurations", "calibrated", "removable", "corrected", "removable"];
 /// Reason why a number of configurations is enough.
 const LITTLE_GAIN: &str = "from there 10 more gain less than 5 %";
 
@@ -111,8 +110,7 @@ impl PlanErrors {
 
 /// The part of a robot's error that no geometry describes.
 pub(crate) fn robot_error_words(it: &PlanErrors, is_a_guess: bool) -> String {
-    let assumed =
-        if is_a_guess { " (assumed: 0.3 mm per metre of reach; state yours with --robot-error)" } else { "" };
+    let assumed = if is_a_guess { " (assumed: 0.3 mm per metre of reach; state yours with --robot-error)" } else { "" };
     format!("{} mm that no geometry of the axes describes{assumed}", number(it.robot_error_mm))
 }
 
@@ -120,12 +118,9 @@ impl PlanReport {
     /// A plan for a model, with the duration of the robot's stop at each row, seconds.
     #[must_use]
     pub fn new(model: &Model, options: &PlanOptions, found: &Found, stop_s: f64) -> Self {
-        let count =
-            |part: RowPurpose| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
-        let curve = |point: &CurvePoint| CurveEntry {
-            configurations: point.count,
-            expected: PlanErrors::new(&point.expected),
-        };
+        let count = |part: RowPurpose| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
+        let curve =
+            |point: &CurvePoint| CurveEntry { configurations: point.count, expected: PlanErrors::new(&point.expected) };
         let kept = options.fitted_readings().len() / model.robot.reading_names().len().max(1);
         PlanReport {
             model: model.path.display().to_string(),
@@ -149,18 +144,10 @@ impl PlanReport {
             rows: found
                 .rows
                 .iter()
-                .map(|row| PlanRowEntry {
-                    set: row.part.set(),
-                    returns: row.returns,
-                    readings: row.readings.clone(),
-                })
+                .map(|row| PlanRowEntry { set: row.part.set(), returns: row.returns, readings: row.readings.clone() })
                 .collect(),
             checked: checked_conditions(&options.conditions),
-            refused: found
-                .refusals
-                .iter_counts()
-                .map(|(obstacle, count)| (obstacle.words(), count))
-                .collect(),
+            refused: found.refusals.iter_counts().map(|(obstacle, count)| (obstacle.words(), count)).collect(),
             tried: found.refusals.tried,
             left_out: found.left_out.iter().map(|(a, b)| [a.clone(), b.clone()]).collect(),
             without_limits: found.without_limits.clone(),
@@ -170,9 +157,8 @@ impl PlanReport {
     }
 
     fn checked_words(&self) -> String {
-        let missing = ["collisions of the robot with itself", "sight"]
-            .into_iter()
-            .filter(|it| !self.checked.contains(it));
+        let missing =
+            ["collisions of the robot with itself", "sight"].into_iter().filter(|it| !self.checked.contains(it));
         let not: Vec<&str> = missing.chain(["the way between configurations"]).collect();
         format!("{}; NOT {}", self.checked.join(", "), not.join(", "))
     }
@@ -245,8 +231,7 @@ impl PlanReport {
         ];
         let numbers = self.planned_count() * self.numbers;
         if numbers < self.unknowns {
-            let words =
-                format!("{numbers} numbers for {} unknowns: the prior decides the rest", self.unknowns);
+            let words = format!("{numbers} numbers for {} unknowns: the prior decides the rest", self.unknowns);
             facts.push(("", words));
         }
         let words = |it: &PlanErrors| {
@@ -288,12 +273,8 @@ impl PlanReport {
         for point in &self.curve {
             let it = &point.expected;
             let mark = if point.configurations == self.planned_count() { "  planned" } else { "" };
-            let cells = [
-                it.calibrated_mm,
-                it.calibrated_undetermined_mm,
-                it.corrected_mm,
-                it.corrected_undetermined_mm,
-            ];
+            let cells =
+                [it.calibrated_mm, it.calibrated_undetermined_mm, it.corrected_mm, it.corrected_undetermined_mm];
             row(&mut out, &format!("  {}{mark}", point.configurations), widths, cells.map(number));
         }
         let _ = writeln!(out);

@@ -41,8 +41,7 @@ impl RowReport {
     /// A row of some data.
     #[must_use]
     pub fn new(robot: &Robot, data: &Dataset, row: &WatchedRow) -> Self {
-        let mm =
-            |errors: Option<ExpectedErrors>, of: fn(&ExpectedErrors) -> f64| errors.map(|it| 1e3 * of(&it));
+        let mm = |errors: Option<ExpectedErrors>, of: fn(&ExpectedErrors) -> f64| errors.map(|it| 1e3 * of(&it));
         let names = robot.reading_names();
         let words = |(name, value): (&String, &f64)| {
             let kind = robot.reading_kind(name);
@@ -103,8 +102,7 @@ impl RowReport {
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = self.answer();
-        if let (Some(calibrated), Some(corrected)) = (self.expected_calibrated_mm, self.expected_corrected_mm)
-        {
+        if let (Some(calibrated), Some(corrected)) = (self.expected_calibrated_mm, self.expected_corrected_mm) {
             let _ = write!(
                 out,
                 "\n  expected now {} mm calibrated, {} mm corrected",
@@ -112,8 +110,7 @@ impl RowReport {
                 number(corrected)
             );
         }
-        if let (Some(calibrated), Some(corrected)) = (self.after_10_calibrated_mm, self.after_10_corrected_mm)
-        {
+        if let (Some(calibrated), Some(corrected)) = (self.after_10_calibrated_mm, self.after_10_corrected_mm) {
             let _ = write!(out, "; 10 more would leave {} and {} mm", number(calibrated), number(corrected));
         }
         if !self.next_words.is_empty() {
@@ -149,9 +146,7 @@ fn word(mistake: &Mistake) -> &'static str {
 /// A mistake in a sentence.
 fn sentence(robot: &Robot, mistake: &Mistake) -> String {
     match mistake {
-        Mistake::Stale => {
-            "WRONG: it is the measurement of the configuration before, measure it again".to_owned()
-        }
+        Mistake::Stale => "WRONG: it is the measurement of the configuration before, measure it again".to_owned(),
         Mistake::Sign(joint) => format!("WRONG: {} has the other sign", escape_invisible(joint)),
         Mistake::Joint(joint, by) => {
             let by = format_reading(robot.reading_kind(joint), *by);

@@ -32,9 +32,8 @@ impl SightCheck {
     }
 
     pub(crate) fn unseen_words(&self) -> Option<String> {
-        let words = || {
-            format!("{}: no way passes them, so that nothing determines their axes", first_few(&self.unseen))
-        };
+        let words =
+            || format!("{}: no way passes them, so that nothing determines their axes", first_few(&self.unseen));
         (!self.unseen.is_empty()).then(words)
     }
 }

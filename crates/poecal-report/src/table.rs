@@ -28,12 +28,8 @@ pub(crate) fn models(set: &SetAccuracy) -> Vec<ModelColumn> {
 type StatisticRow = (&'static str, &'static str, fn(Statistic) -> f64);
 
 /// The rows of every table of errors.
-pub(crate) const STATISTICS: [StatisticRow; 4] = [
-    ("mean", "mean", |s| s.mean),
-    ("RMS", "rms", |s| s.rms),
-    ("95 %", "p95", |s| s.p95),
-    ("max", "max", |s| s.max),
-];
+pub(crate) const STATISTICS: [StatisticRow; 4] =
+    [("mean", "mean", |s| s.mean), ("RMS", "rms", |s| s.rms), ("95 %", "p95", |s| s.p95), ("max", "max", |s| s.max)];
 
 /// Widths of the label and of each cell in tables of models.
 pub(crate) const WIDTHS: [usize; 2] = [26, 13];
@@ -56,8 +52,7 @@ pub(crate) fn measured_quantities<'a>(
     held_out: Option<&'a SetAccuracy>,
 ) -> impl Iterator<Item = Quantity> + 'a {
     let is_in = |set: &SetAccuracy, quantity| set.calibrated.get(quantity).is_some();
-    let is_measured =
-        move |it: &Quantity| is_in(training, *it) || held_out.is_some_and(|set| is_in(set, *it));
+    let is_measured = move |it: &Quantity| is_in(training, *it) || held_out.is_some_and(|set| is_in(set, *it));
     Quantity::ALL.into_iter().filter(is_measured)
 }
 
@@ -137,9 +132,9 @@ pub(crate) fn further_words(quantity: Quantity) -> String {
 
 /// The noise of each measured quantity, with its unit.
 pub(crate) fn noise_words(sigma: &MeasuredQuantities<f64>) -> String {
-    let words = sigma.iter().map(|(quantity, it)| {
-        format!("{} {}{}", number(it), quantity.unit().symbol(), further_words(quantity))
-    });
+    let words = sigma
+        .iter()
+        .map(|(quantity, it)| format!("{} {}{}", number(it), quantity.unit().symbol(), further_words(quantity)));
     format!("{} each component", words.collect::<Vec<_>>().join(", "))
 }
 

@@ -88,10 +88,8 @@ impl WitnessPlan {
         });
         let seen: Vec<String> = seen.collect();
         let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
-        let unseen: Vec<String> =
-            self.invisible.iter().map(|it| escape_invisible(&it.joint).into_owned()).collect();
-        let unseen =
-            if unseen.is_empty() { String::new() } else { format!("; not visible: {}", unseen.join(", ")) };
+        let unseen: Vec<String> = self.invisible.iter().map(|it| escape_invisible(&it.joint).into_owned()).collect();
+        let unseen = if unseen.is_empty() { String::new() } else { format!("; not visible: {}", unseen.join(", ")) };
         format!("{} configurations; smallest visible shifts (95 %): {seen}{unseen}", self.configurations)
     }
 
@@ -100,11 +98,7 @@ impl WitnessPlan {
     pub fn text(&self) -> String {
         let mut out = String::new();
         line(&mut out, "robot", &self.robot);
-        let new = if self.are_new {
-            ", new: measure them now, and name that visit by --reference later"
-        } else {
-            ""
-        };
+        let new = if self.are_new { ", new: measure them now, and name that visit by --reference later" } else { "" };
         line(&mut out, "witnesses", &format!("{}{new}", self.configurations));
         line(&mut out, "noise", &format!("{:.3} mm a visit and coordinate", self.noise_mm));
         out.push_str(&sight_table(&self.joints, &self.invisible));
@@ -175,8 +169,7 @@ impl TrackReport {
             return match self.state {
                 RobotCondition::Unchanged => format!("unchanged within {:.3} mm", self.change_mm),
                 RobotCondition::Changed => {
-                    "changed, and no single cause explains it: another robot or tool, or calibrate anew"
-                        .to_owned()
+                    "changed, and no single cause explains it: another robot or tool, or calibrate anew".to_owned()
                 }
             };
         };
@@ -200,10 +193,9 @@ impl TrackReport {
     /// Reference of the judgement.
     pub(crate) fn judged_words(&self) -> String {
         match self.judged_by {
-            JudgingBasis::Repeats => format!(
-                "{} of {} rows that repeat earlier ones, measured against measured",
-                self.repeated, self.rows
-            ),
+            JudgingBasis::Repeats => {
+                format!("{} of {} rows that repeat earlier ones, measured against measured", self.repeated, self.rows)
+            }
             JudgingBasis::Model => format!("the model, at {} rows", self.rows),
         }
     }
@@ -217,9 +209,7 @@ impl TrackReport {
     /// The level of the calibration after the visit, by its level before.
     pub(crate) fn level_words(&self, before: &str) -> String {
         match (self.state, self.explanation.as_ref().map(|it| to_do(it).0)) {
-            (RobotCondition::Unchanged, _) | (RobotCondition::Changed, Some(UsageLevel::Whole)) => {
-                before.to_owned()
-            }
+            (RobotCondition::Unchanged, _) | (RobotCondition::Changed, Some(UsageLevel::Whole)) => before.to_owned(),
             (RobotCondition::Changed, Some(UsageLevel::Axes)) => format!("axes: {before}; tool: do not use"),
             (RobotCondition::Changed, Some(UsageLevel::None) | None) => "do not use".to_owned(),
         }

@@ -258,15 +258,12 @@ pub(crate) enum UsageLevel {
 fn words(found: &ChangeExplanation) -> String {
     let first = found.names.first().map(String::as_str).unwrap_or_default();
     let name = |what: &str| if first.is_empty() { what.to_owned() } else { format!("{what} {first}") };
-    let angle =
-        |(value, sigma): (f64, f64)| format!("{:+.3} ± {:.3} deg", value.to_degrees(), sigma.to_degrees());
+    let angle = |(value, sigma): (f64, f64)| format!("{:+.3} ± {:.3} deg", value.to_degrees(), sigma.to_degrees());
     let length = |(value, sigma): (f64, f64)| format!("{:+.3} ± {:.3} mm", 1e3 * value, 1e3 * sigma);
     let far = || {
         let size = |turns: bool, unit: &str| {
             let shown = |value: f64| if turns { value.to_degrees() } else { 1e3 * value };
-            found
-                .size(turns)
-                .map(|(value, sigma)| format!("{:.3} ± {:.3} {unit}", shown(value), shown(sigma)))
+            found.size(turns).map(|(value, sigma)| format!("{:.3} ± {:.3} {unit}", shown(value), shown(sigma)))
         };
         [size(false, "mm"), size(true, "deg")].into_iter().flatten().collect::<Vec<_>>().join(" and ")
     };
@@ -291,8 +288,7 @@ fn words(found: &ChangeExplanation) -> String {
             format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1))
         }
         ExplanationKind::Zeros => {
-            let all =
-                found.names.iter().enumerate().map(|(at, name)| format!("{name}: zero by {}", each(at)));
+            let all = found.names.iter().enumerate().map(|(at, name)| format!("{name}: zero by {}", each(at)));
             all.collect::<Vec<_>>().join(", ")
         }
     }
@@ -303,8 +299,7 @@ pub(crate) fn sight_table(joints: &[SightEntry], invisible: &[InvisibleEntry]) -
     let mut out = String::new();
     let _ = writeln!(out, "\n  {:16} {:>30}", "joint", "smallest visible shift (95 %)");
     for joint in joints {
-        let smallest =
-            joint.smallest.map_or_else(|| "not visible".to_owned(), |it| format!("{it:.3} {}", joint.unit));
+        let smallest = joint.smallest.map_or_else(|| "not visible".to_owned(), |it| format!("{it:.3} {}", joint.unit));
         let _ = writeln!(out, "  {:16} {smallest:>30}", escape_invisible(&joint.joint));
     }
     for it in invisible {

@@ -30,20 +30,13 @@ fn fifty_rows_are_one_threads_work() {
         let model = Model { robot: made.nominal, source: ModelSource::Toml, path: "elbow.toml".into() };
         let folder = std::env::temp_dir().join(format!("poecal_few_rows_{}", std::process::id()));
         let results = Results { file, residuals: ResidualRows::AtHand(&residuals), report };
-        let place = ReservedFolder::reserve(
-            &folder,
-            Contents::Calibration,
-            ExistingFiles::Replaced,
-            &[],
-            &mut |_| (),
-        );
+        let place = ReservedFolder::reserve(&folder, Contents::Calibration, ExistingFiles::Replaced, &[], &mut |_| ());
         write(place.unwrap(), None, &model, &calibration.robot_with_targets(), results).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }
     assert_eq!(threads(), before);
     // Many rows show that the count would have detected threads.
-    let many =
-        Simulation { count: 20_000, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
+    let many = Simulation { count: 20_000, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
     calibrate(&many.nominal, &many.data, &CalibrationOptions::default()).unwrap();
     if std::thread::available_parallelism().is_ok_and(|count| count.get() > 1) {
         assert!(threads() > before);

@@ -19,11 +19,7 @@ pub struct NamedFrame {
 /// Nine decimals, without `-0`.
 fn number(value: f64) -> String {
     let text = format!("{value:.9}");
-    if text.trim_start_matches(['-', '0', '.']).is_empty() {
-        text.trim_start_matches('-').to_owned()
-    } else {
-        text
-    }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }
 
 fn join_values(values: &[f64], separator: &str) -> String {
@@ -165,17 +161,9 @@ impl NamedFrame {
             format!("# {name}: 4 x 4 matrix, metres"),
             format!("[\n{}\n]", rows.join(",\n")),
             format!("# {name}: x y z (m), quaternion x y z w"),
-            format!(
-                "{}  {}",
-                join_values(self.pose.translation.as_slice(), " "),
-                join_values(&[qx, qy, qz, qw], " ")
-            ),
+            format!("{}  {}", join_values(self.pose.translation.as_slice(), " "), join_values(&[qx, qy, qz, qw], " ")),
             format!("# {name}: OpenCV's tvec (m) and rvec (rad)"),
-            format!(
-                "{}  {}",
-                join_values(self.pose.translation.as_slice(), " "),
-                join_values(&self.rvec(), " ")
-            ),
+            format!("{}  {}", join_values(self.pose.translation.as_slice(), " "), join_values(&self.rvec(), " ")),
             format!("# {name}: X Y Z (mm), KUKA's A B C (deg)"),
             format!("{}  {}", join_values(&millimetres, " "), join_values(&[c, b, a], " ")),
             format!("# {name}: X Y Z (mm), FANUC's W P R (deg)"),
@@ -234,11 +222,7 @@ pub fn tool_forms(pose: &Pose, bounds: ToolBounds) -> Vec<ToolForm> {
     let Some(axis) = bounds.axis_rad else {
         let keep = |angles: &str| format!("position only, keep your {angles}");
         return vec![
-            form(
-                "KUKA",
-                format!("KUKA, mm; {}", keep("A, B, C")),
-                format!("X {x}, Y {y}, Z {z}  (keep your A, B, C)"),
-            ),
+            form("KUKA", format!("KUKA, mm; {}", keep("A, B, C")), format!("X {x}, Y {y}, Z {z}  (keep your A, B, C)")),
             form(
                 "FANUC",
                 format!("FANUC, UTOOL, mm; {}", keep("W, P, R")),

@@ -43,9 +43,8 @@ impl std::str::FromStr for FrameNames {
 
     /// Four names in this order, with commas between them.
     fn from_str(text: &str) -> Result<Self> {
-        let is_plain = |name: &&str| {
-            !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-/.".contains(c))
-        };
+        let is_plain =
+            |name: &&str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-/.".contains(c));
         let names: Vec<&str> = text.split(',').map(str::trim).filter(is_plain).collect();
         let [base, flange, camera, target] = names[..] else {
             return ErrorKind::Option.refuse(format!(
@@ -104,8 +103,7 @@ impl ArmByJoints {
     ) -> Result<Self> {
         let [across, along, tilt, turn] = found.noise;
         let noise = Noise::new(across.min(along), tilt.min(turn));
-        let session =
-            measurements::text(data, robot, &noise, "The poses of a hand-eye calibration that count")?;
+        let session = measurements::text(data, robot, &noise, "The poses of a hand-eye calibration that count")?;
         let errors = match errors {
             Ok(Some(errors)) => Ok(errors),
             Ok(None) => Err("no poses could be held out".to_owned()),
@@ -202,8 +200,7 @@ impl ArmEntry<'_> {
     fn new(arm: &ArmByJoints) -> ArmEntry<'_> {
         match &arm.errors {
             Ok(ArmFitComparison { rows, held, fitted }) => {
-                let of =
-                    |errors: &(f64, f64)| ErrorEntry { rows: *rows, rms_mm: errors.0, rms_deg: errors.1 };
+                let of = |errors: &(f64, f64)| ErrorEntry { rows: *rows, rms_mm: errors.0, rms_deg: errors.1 };
                 ArmEntry::Compared { held: of(held), fitted: of(fitted), command: &arm.command }
             }
             Err(reason) => ArmEntry::NotFitted { not_fitted: reason, command: &arm.command },
@@ -333,12 +330,8 @@ impl HandEyeResult<'_> {
         for (row, error) in self.found.rows.iter().enumerate() {
             let name = poecal_storage::csv_text::cell(self.name(row));
             let fitted = u8::from(error.is_fitted);
-            text += &format!(
-                "{},{name},{fitted},{:.6},{:.6}\n",
-                row + 1,
-                1e3 * error.shift_m,
-                error.turn_rad.to_degrees()
-            );
+            text +=
+                &format!("{},{name},{fitted},{:.6},{:.6}\n", row + 1, 1e3 * error.shift_m, error.turn_rad.to_degrees());
         }
         text
     }
@@ -352,10 +345,7 @@ impl HandEyeResult<'_> {
         let what = if is_in_hand { "EYE-IN-HAND" } else { "EYE-TO-HAND" };
         let mut texts = vec![
             ("transforms.txt", camera.short_forms() + "\n" + &target.short_forms()),
-            (
-                "easy_handeye2.calib",
-                camera.easy_handeye2(is_in_hand, [base, flange, camera_name, target_name]),
-            ),
+            ("easy_handeye2.calib", camera.easy_handeye2(is_in_hand, [base, flange, camera_name, target_name])),
             ("static_transform.launch.py", camera.launch_file(what)),
             ("opencv.yml", camera.opencv()),
             ("rows.csv", self.rows_text()),

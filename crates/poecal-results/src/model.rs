@@ -158,11 +158,7 @@ impl Model {
         if let Some(form) = ForeignForm::from_text(text, path) {
             let document = form.read(text, path, beside, selection)?;
             let robot = document.robot().clone();
-            return Ok(Model {
-                robot,
-                source: ModelSource::Urdf(Box::new(document)),
-                path: path.to_path_buf(),
-            });
+            return Ok(Model { robot, source: ModelSource::Urdf(Box::new(document)), path: path.to_path_buf() });
         }
         if looks_like_json(path, text) {
             refuse_chain(path, selection)?;
@@ -312,11 +308,8 @@ fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Resul
         let Some((name, link)) = named.iter().find(|(name, _)| !known.contains(&name.as_str())) else {
             continue;
         };
-        let known = if known.is_empty() {
-            format!("it names no {what}")
-        } else {
-            format!("it has {}", first_few(known))
-        };
+        let known =
+            if known.is_empty() { format!("it names no {what}") } else { format!("it has {}", first_few(known)) };
         return Err(ErrorKind::Option.error(format!(
             "found {what} `{name}` on link `{link}`, expected {what}s that the model names itself, since links are those of a URDF: {known}"
         )).in_file(path));
@@ -346,9 +339,8 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<ConvertedModel> {
             (ConvertedModel { text, notes: toml_notes(model) }, again)
         }
     };
-    let again = again.map_err(|error| {
-        export(model, format!("the converted model cannot be read back: {}", error.message()))
-    })?;
+    let again = again
+        .map_err(|error| export(model, format!("the converted model cannot be read back: {}", error.message())))?;
     verify(model, &plain, &again)?;
     Ok(converted)
 }
@@ -356,7 +348,10 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<ConvertedModel> {
 fn toml_notes(model: &Model) -> Vec<String> {
     match &model.source {
         ModelSource::Urdf(_) => {
-            vec!["link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out".to_owned()]
+            vec![
+                "link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out"
+                    .to_owned(),
+            ]
         }
         ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
     }

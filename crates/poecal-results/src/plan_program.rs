@@ -31,8 +31,7 @@ pub fn plan_program(path: &Path, robot: &Robot, rows: &[PlannedRow]) -> Result<S
         .map(|stem| stem.to_string_lossy().chars().filter(char::is_ascii_alphanumeric).collect())
         .unwrap_or_default();
     let name = if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("plan{name}") };
-    let rows: Vec<ProgramRow> =
-        rows.iter().enumerate().map(|(at, row)| ProgramRow::new(at + 1, row)).collect();
+    let rows: Vec<ProgramRow> = rows.iter().enumerate().map(|(at, row)| ProgramRow::new(at + 1, row)).collect();
     let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
     match ending.as_deref() {
         Some("script") => Ok(script(&name, &rows)),
@@ -83,11 +82,8 @@ fn script(name: &str, rows: &[ProgramRow]) -> String {
     ABOVE.iter().for_each(|line| out.push_str(&format!("  # {line}\n")));
     for row in rows {
         let _ = writeln!(out, "  movej([{}], a=0.5, v={SPEED_RAD_S})", join_values(&row.angles_rad, 6));
-        let _ = writeln!(
-            out,
-            "  popup(\"row {}: measure, then continue\", title=\"poecal\", blocking=True)",
-            row.number
-        );
+        let _ =
+            writeln!(out, "  popup(\"row {}: measure, then continue\", title=\"poecal\", blocking=True)", row.number);
     }
     out + "end\n"
 }

@@ -166,8 +166,7 @@ fn on_robot(model: &Model) -> Option<&str> {
         return None;
     }
     let moves = |it: &TargetEntry| !matches!(it.on, Some(BodyEntry::Base));
-    let names: Vec<&str> =
-        measured_targets(model).into_iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
+    let names: Vec<&str> = measured_targets(model).into_iter().filter(|(_, it)| moves(it)).map(|it| it.0).collect();
     only_target(&names).or_else(|| names.first().copied())
 }
 
@@ -225,8 +224,7 @@ fn single_target(model: &Model) -> Result<Option<&str>> {
 }
 
 /// Expected root mean square distance and angle, 95 % bound of the distance, and whether every joint is inside the sampled range.
-const UNCERTAINTY_COLUMNS: &str =
-    ",sigma_position[m],sigma_rotation[rad],bound95_position[m],inside_sampled_range";
+const UNCERTAINTY_COLUMNS: &str = ",sigma_position[m],sigma_rotation[rad],bound95_position[m],inside_sampled_range";
 
 /// Predicted uncertainty of each row.
 fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(PredictedError, bool)>> {
@@ -269,9 +267,8 @@ fn device_from_base(model: &Model) -> Result<Pose> {
     match &model.source {
         ModelSource::Calibration(file) => {
             let first = file.stations.first().and_then(|station| station.instrument.as_ref());
-            let is_moved = |name: &&String| {
-                file.instruments.get(*name).is_some_and(|instrument| instrument.on != BodyEntry::Base)
-            };
+            let is_moved =
+                |name: &&String| file.instruments.get(*name).is_some_and(|instrument| instrument.on != BodyEntry::Base);
             if let Some(name) = first.filter(is_moved) {
                 return Err(ErrorKind::Option.error(format!(
                     "found the instrument `{name}` on the robot, expected one beside it for --output-frame device: use --output-frame base"

@@ -148,10 +148,9 @@ impl Record {
         }
         match key {
             _ if text.is_empty() => Ok(None),
-            "date" | "instrument_calibrated" | "valid_until" if !is_date(text) => Err(record_error(format!(
-                "found `{text}` as the {}, expected a day like 2026-03-02",
-                day_name(key)
-            ))),
+            "date" | "instrument_calibrated" | "valid_until" if !is_date(text) => {
+                Err(record_error(format!("found `{text}` as the {}, expected a day like 2026-03-02", day_name(key))))
+            }
             "temperature" => temperature(text).map(Some).ok_or_else(|| {
                 record_error(format!(
                     "found `{text}` as the temperature, expected degrees Celsius, like 21.5C or 21.5+-0.5C"
@@ -244,12 +243,9 @@ mod tests {
 
     #[test]
     fn temperatures_have_their_unit() {
-        for (text, kept) in [
-            ("21.5C", "21.5 °C"),
-            ("-4 °C", "-4 °C"),
-            ("20 ± 0.5 °C", "20 ± 0.5 °C"),
-            ("20+-1C", "20 ± 1 °C"),
-        ] {
+        for (text, kept) in
+            [("21.5C", "21.5 °C"), ("-4 °C", "-4 °C"), ("20 ± 0.5 °C", "20 ± 0.5 °C"), ("20+-1C", "20 ± 1 °C")]
+        {
             assert_eq!(temperature(text).as_deref(), Some(kept));
         }
         for none in ["21.5", "C", "warm", "21.5 F", "-300C", "20+--1C", "nanC", "1e2C", "20+-C"] {

@@ -58,11 +58,7 @@ impl Settings {
     pub fn read(path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
         let path = path.as_ref();
         Settings::parse(
-            &source_text::read_up_to(
-                path,
-                "settings (TOML, as `poecal init` writes them)",
-                ResourceLimit::Settings,
-            )?,
+            &source_text::read_up_to(path, "settings (TOML, as `poecal init` writes them)", ResourceLimit::Settings)?,
             path,
             keys,
         )
@@ -79,8 +75,7 @@ impl Settings {
 
     /// The part of reading that does not depend on the kind of path, compiled once.
     fn parse_at(text: &str, path: &Path, keys: &[&str]) -> Result<Self> {
-        let at =
-            |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, text, offset);
+        let at = |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, text, offset);
         let table = DeTable::parse(text).map_err(|error| {
             at(error.span().map_or(0, |span| span.start), error.message().trim().replace('\n', ", "))
         })?;
@@ -128,9 +123,11 @@ impl Settings {
             entries.push(SettingLine { key: key.get_ref().to_string(), value, line, column });
         }
         if !versioned {
-            return Err(ErrorKind::Syntax.error(format!(
-                "found no `{VERSION_KEY} = 1`, expected settings with this line, the version of their form"
-            )).in_file(path));
+            return Err(ErrorKind::Syntax
+                .error(format!(
+                    "found no `{VERSION_KEY} = 1`, expected settings with this line, the version of their form"
+                ))
+                .in_file(path));
         }
         entries.sort_by_key(|entry| (entry.line, entry.column));
         Ok(Settings { path: path.to_path_buf(), entries })
@@ -146,14 +143,10 @@ impl Settings {
 fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
     match value.get_ref() {
         DeValue::Boolean(on) => Some(SettingValue::Switch(*on)),
-        DeValue::Array(items) => {
-            items.iter().map(text_or_number).collect::<Option<_>>().map(SettingValue::Many)
+        DeValue::Array(items) => items.iter().map(text_or_number).collect::<Option<_>>().map(SettingValue::Many),
+        DeValue::String(_) | DeValue::Integer(_) | DeValue::Float(_) | DeValue::Datetime(_) | DeValue::Table(_) => {
+            text_or_number(value).map(SettingValue::One)
         }
-        DeValue::String(_)
-        | DeValue::Integer(_)
-        | DeValue::Float(_)
-        | DeValue::Datetime(_)
-        | DeValue::Table(_) => text_or_number(value).map(SettingValue::One),
     }
 }
 
@@ -168,11 +161,9 @@ fn text_or_number(value: &Spanned<DeValue>) -> Option<String> {
         DeValue::String(text) => Some(text.to_string()),
         DeValue::Integer(number) if number.radix() == 10 => Some(number.as_str().to_owned()),
         DeValue::Float(number) => Some(number.as_str().to_owned()),
-        DeValue::Integer(_)
-        | DeValue::Boolean(_)
-        | DeValue::Datetime(_)
-        | DeValue::Array(_)
-        | DeValue::Table(_) => None,
+        DeValue::Integer(_) | DeValue::Boolean(_) | DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
+            None
+        }
     }
 }
 
@@ -188,10 +179,10 @@ mod tests {
 
     #[test]
     fn values_are_as_they_would_be_typed() {
-        let text = "# mine\nforce = true\nmeasurements = [\"a.csv\", 'b c.csv']\nheld_out = 0.30\npoecal_settings = 1\n";
+        let text =
+            "# mine\nforce = true\nmeasurements = [\"a.csv\", 'b c.csv']\nheld_out = 0.30\npoecal_settings = 1\n";
         let settings = Settings::parse(text, "s.toml", &KEYS).unwrap();
-        let values: Vec<_> =
-            settings.entries.iter().map(|entry| (entry.key.as_str(), &entry.value)).collect();
+        let values: Vec<_> = settings.entries.iter().map(|entry| (entry.key.as_str(), &entry.value)).collect();
         let files = SettingValue::Many(vec!["a.csv".to_owned(), "b c.csv".to_owned()]);
         assert_eq!(
             values,
@@ -225,8 +216,7 @@ mod tests {
         );
         assert!(refuse_settings("poecal_settings = 1\nmodel = \n").starts_with("s.toml:2:"));
         assert!(
-            refuse_settings("poecal_settings = 1\nmodel = 'a'\nmodel = 'b'\n")
-                .starts_with("s.toml:3:1: duplicate key")
+            refuse_settings("poecal_settings = 1\nmodel = 'a'\nmodel = 'b'\n").starts_with("s.toml:3:1: duplicate key")
         );
         assert!(refuse_settings("poecal_settings = 2\n").contains("poecal_settings = 1"));
     }
@@ -238,8 +228,7 @@ mod tests {
         let settings = Settings::parse(text, "s.toml", &known).unwrap();
         let found: Vec<_> = settings.entries.iter().map(|it| (&it.value, it.line, it.column)).collect();
         let one = |text: &str| SettingValue::One(text.to_owned());
-        let expected =
-            [(one("serial=A = 7"), 3, 10), (one("date=2026-03-02"), 4, 8), (one("place=12"), 5, 9)];
+        let expected = [(one("serial=A = 7"), 3, 10), (one("date=2026-03-02"), 4, 8), (one("place=12"), 5, 9)];
         assert!(found.iter().zip(&expected).all(|(a, b)| (a.0, a.1, a.2) == (&b.0, b.1, b.2)), "{found:?}");
         let refused = |text: &str| Settings::parse(text, "s.toml", &known).unwrap_err().to_string();
         assert_eq!(

@@ -38,8 +38,7 @@ pub fn reading<T>(work: impl FnOnce() -> T) -> T {
 /// Runs `work` like [`reading`], with an input of this name and text, which is on no disk.
 pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
     reading(|| {
-        let before =
-            keep(name, Some(InputDocument::new(Box::new(Cursor::new(text.as_bytes().to_vec())), None)));
+        let before = keep(name, Some(InputDocument::new(Box::new(Cursor::new(text.as_bytes().to_vec())), None)));
         let done = work();
         keep(name, before);
         done
@@ -100,16 +99,11 @@ fn close_most() {
 
 /// A reader of an input from its beginning, if it is kept.
 pub(crate) fn reopen(path: &Path) -> Option<ByteSource> {
-    OPEN.with_borrow(|all| {
-        Some(Box::new(DocumentReader::Kept(all.as_ref()?.get(path)?.clone())) as ByteSource)
-    })
+    OPEN.with_borrow(|all| Some(Box::new(DocumentReader::Kept(all.as_ref()?.get(path)?.clone())) as ByteSource))
 }
 
 /// A reader of an input whose bytes are no longer kept: bytes that were read before are read again.
-pub(crate) fn stream(
-    path: &Path,
-    open: impl FnOnce() -> Result<ByteSource>,
-) -> Result<io::Result<ByteSource>> {
+pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<ByteSource>) -> Result<io::Result<ByteSource>> {
     match OPEN.with_borrow_mut(|all| all.as_mut()?.remove(path)) {
         None => open().map(Ok),
         Some(document) => Ok(document.into_stream()),
@@ -155,10 +149,7 @@ struct InputDocument {
 
 impl InputDocument {
     fn new(rest: ByteSource, path: Option<PathBuf>) -> Self {
-        InputDocument {
-            kept: Arc::new(Mutex::new(BufferedInput { bytes: Vec::new(), rest: Some(rest), path })),
-            at: 0,
-        }
+        InputDocument { kept: Arc::new(Mutex::new(BufferedInput { bytes: Vec::new(), rest: Some(rest), path })), at: 0 }
     }
 
     fn kept_input(&self) -> MutexGuard<'_, BufferedInput> {

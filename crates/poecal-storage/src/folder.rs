@@ -74,10 +74,7 @@ pub fn kind(root: &Path, path: &Path) -> Result<ObjectKind, SkippedEntry> {
 ///
 /// # Errors
 /// Those of [`names`].
-pub fn files(
-    folder: &Path,
-    is_wanted: impl Fn(&str) -> bool,
-) -> io::Result<(Vec<String>, Vec<SkippedEntry>)> {
+pub fn files(folder: &Path, is_wanted: impl Fn(&str) -> bool) -> io::Result<(Vec<String>, Vec<SkippedEntry>)> {
     let (names, mut left) = names(folder)?;
     let mut found = Vec::new();
     for name in names.into_iter().filter(|name| is_wanted(name)) {
@@ -117,10 +114,8 @@ mod tests {
         drop(socket);
         std::fs::remove_dir_all(&home).unwrap();
         assert_eq!(found, ["a.csv", "within.csv"]);
-        let told: Vec<(String, &str)> = left
-            .iter()
-            .map(|it| (it.path.file_name().unwrap().to_string_lossy().into_owned(), it.reason))
-            .collect();
+        let told: Vec<(String, &str)> =
+            left.iter().map(|it| (it.path.file_name().unwrap().to_string_lossy().into_owned(), it.reason)).collect();
         assert_eq!(
             told,
             [

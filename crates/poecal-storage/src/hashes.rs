@@ -29,9 +29,7 @@ pub fn sha256(path: &Path) -> Result<Option<String>> {
     };
     read().map_err(|error: io::Error| {
         ErrorKind::File
-            .error(format!(
-                "the file cannot be read ({error}), expected an input file to take the checksum of"
-            ))
+            .error(format!("the file cannot be read ({error}), expected an input file to take the checksum of"))
             .in_file(path)
     })
 }

@@ -45,7 +45,6 @@ pub fn text_of(path: &std::path::Path, what: &str) -> Result<String> {
 /// A value as the text of a JSON file; `what` describes it in messages.
 pub fn json_text(value: &impl Serialize, what: &str) -> Result<String> {
     let text = serde_json::to_string_pretty(value);
-    let text =
-        text.map_err(|error| ErrorKind::Export.error(format!("the {what} cannot be written: {error}")))?;
+    let text = text.map_err(|error| ErrorKind::Export.error(format!("the {what} cannot be written: {error}")))?;
     Ok(text + "\n")
 }

@@ -15,8 +15,7 @@ const MEASURED: [&str; 10] = ["x", "y", "z", "qx", "qy", "qz", "qw", "target", "
 
 /// The error for a model's text that is a table; `None` for others.
 pub fn table_for_model(text: &str, path: &Path) -> Option<Error> {
-    let (index, line) =
-        text.trim_start_matches('\u{feff}').lines().enumerate().find(|(_, line)| has_content(line))?;
+    let (index, line) = text.trim_start_matches('\u{feff}').lines().enumerate().find(|(_, line)| has_content(line))?;
     let cells = cells(line)?;
     let dh = cells.iter().filter(|cell| DH_COLUMNS.contains(&cell.to_lowercase().as_str())).count();
     let measured = cells.iter().filter(|cell| MEASURED.contains(cell)).count();
@@ -108,12 +107,8 @@ mod tests {
                     of `joint` for each row (docs/file-formats.md, TOML)";
         assert_eq!(model("a,alpha,d,theta\n0,90,400,0\n"), toml);
         assert_eq!(model("a[mm]; alpha[deg]; d[mm]; theta[deg]\n"), toml);
-        assert!(
-            model("# DH\ni a alpha d theta\n").starts_with("m.csv:2: found a table of DH parameters (i, a,")
-        );
-        assert!(
-            model("25,-90,400,0\n").starts_with("m.csv:1: found a table of numbers, expected a robot model")
-        );
+        assert!(model("# DH\ni a alpha d theta\n").starts_with("m.csv:2: found a table of DH parameters (i, a,"));
+        assert!(model("25,-90,400,0\n").starts_with("m.csv:1: found a table of numbers, expected a robot model"));
         assert!(model("id,joint1[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5\n").ends_with(
             "found a table with the columns id, joint1, x, y, z, expected a robot model: URDF, MJCF, SDF, a calibration.json, or TOML that begins \
              with poecal_robot = 1: did you swap the arguments? The model comes first"
@@ -122,16 +117,9 @@ mod tests {
 
     #[test]
     fn what_may_be_a_model_is_none() {
-        for text in [
-            "",
-            "poecal_robot = 1",
-            "joint = [{ a = 1, b = 2 }]",
-            "[home]",
-            "<robot/>",
-            "{\"a\": 1}",
-            "text",
-            "# only",
-        ] {
+        for text in
+            ["", "poecal_robot = 1", "joint = [{ a = 1, b = 2 }]", "[home]", "<robot/>", "{\"a\": 1}", "text", "# only"]
+        {
             assert_eq!(model(text), "", "{text}");
         }
     }

@@ -33,8 +33,8 @@ const TURNS: &str = "rotat";
 const CHANGES_BY_NAME: [&str; 3] = ["xi", "roi", "region"];
 /// Parts of names of keys that change no number of a lens or a board.
 const HARMLESS: [&str; 16] = [
-    "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic",
-    "frames", "flag", "views", "gray", "grey",
+    "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic", "frames", "flag",
+    "views", "gray", "grey",
 ];
 /// Values of a key without any effect.
 const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
@@ -100,9 +100,8 @@ pub fn other_keys(
 /// True if a key scales or shifts.
 fn changes(leaf: &YamlLeaf, at: usize) -> bool {
     let keys: Vec<String> = leaf.path.iter().skip(at).map(|key| key.to_lowercase()).collect();
-    let is_one = |key: &String| {
-        CHANGES.iter().any(|part| key.contains(part)) || CHANGES_BY_NAME.contains(&key.as_str())
-    };
+    let is_one =
+        |key: &String| CHANGES.iter().any(|part| key.contains(part)) || CHANGES_BY_NAME.contains(&key.as_str());
     let is_turn = keys.len() == 1 && keys.iter().any(|key| key.contains(TURNS));
     is_turn || keys.iter().any(is_one)
 }

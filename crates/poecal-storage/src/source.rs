@@ -33,11 +33,7 @@ struct BinaryForm {
     words: &'static str,
 }
 
-const fn form(
-    starts: &'static [&'static [u8]],
-    ends: &'static [&'static str],
-    words: &'static str,
-) -> BinaryForm {
+const fn form(starts: &'static [&'static [u8]], ends: &'static [&'static str], words: &'static str) -> BinaryForm {
     BinaryForm { starts, ends, words }
 }
 
@@ -57,11 +53,7 @@ const FORMS: [BinaryForm; 22] = [
         "a picture",
     ),
     form(&[b"%PDF-"], &["pdf"], "a PDF"),
-    form(
-        &[],
-        &["docx", "doc", "odt", "pptx"],
-        "a document of an office program; save its table as `CSV UTF-8`",
-    ),
+    form(&[], &["docx", "doc", "odt", "pptx"], "a document of an office program; save its table as `CSV UTF-8`"),
     form(&[b"PK\x03\x04"], &[], "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
     form(&[b"\xd0\xcf\x11\xe0"], &[], "a workbook of the old .xls form; save the table as `CSV UTF-8`"),
     form(&[b"\x1f\x8b"], &[], "a file compressed by gzip (.gz); unpack it first"),
@@ -85,11 +77,7 @@ const FORMS: [BinaryForm; 22] = [
         &[],
         "an HDF5 file, or one of MATLAB 7.3; hand its arrays to `Measurements.from_arrays` in Python (`h5py`)",
     ),
-    form(
-        &[b"PAR1"],
-        &[],
-        "a Parquet file; hand it to `Measurements.from_dataframe` in Python (`pandas.read_parquet`)",
-    ),
+    form(&[b"PAR1"], &[], "a Parquet file; hand it to `Measurements.from_dataframe` in Python (`pandas.read_parquet`)"),
     form(
         &[b"\x93NUMPY"],
         &[],
@@ -173,17 +161,9 @@ fn open_source(path: &Path, expected: &str) -> Result<ByteSource> {
 }
 
 /// An input, with its first bytes.
-fn open_with_head(
-    mut rest: ByteSource,
-    path: &Path,
-    expected: &str,
-    limit: ResourceLimit,
-) -> Result<(Input, Vec<u8>)> {
+fn open_with_head(mut rest: ByteSource, path: &Path, expected: &str, limit: ResourceLimit) -> Result<(Input, Vec<u8>)> {
     let mut head = Vec::new();
-    rest.by_ref()
-        .take(HEAD)
-        .read_to_end(&mut head)
-        .map_err(|cause| unreadable_error(path, &cause, expected))?;
+    rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable_error(path, &cause, expected))?;
     // One byte beyond the limit shows that the file is too large.
     let rest = rest.take((limit.value() + 1).saturating_sub(head.len() as u64));
     let input = Input { bytes: Cursor::new(head.clone()).chain(rest), limit };
@@ -202,12 +182,7 @@ impl Input {
 /// Message on an input beyond its limit.
 fn too_large(limit: ResourceLimit) -> String {
     let (row, most) = (limit.row(), limit.value());
-    format!(
-        "it is larger than {}: {}, or allow more by --limit {}=N",
-        amount(most, row.unit),
-        row.advice,
-        row.name
-    )
+    format!("it is larger than {}: {}, or allow more by --limit {}=N", amount(most, row.unit), row.advice, row.name)
 }
 
 /// True if a path means standard input.

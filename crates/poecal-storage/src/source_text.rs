@@ -21,13 +21,12 @@ pub fn read_up_to(path: &Path, expected: &str, limit: ResourceLimit) -> Result<S
     source::open(path, expected, limit)?
         .read_to_end(&mut bytes)
         .map_err(|error| source::unreadable_error(path, &error, expected))?;
-    let text =
-        String::from_utf8(bytes).or_else(|error| latin(error.as_bytes()).ok_or(error)).map_err(|error| {
-            let valid = error.utf8_error().valid_up_to();
-            let message = format!("found bytes that are not UTF-8, expected {expected} as UTF-8 text");
-            let text = String::from_utf8_lossy(error.as_bytes());
-            ErrorKind::File.error(message).at_offset(path, &text, valid)
-        })?;
+    let text = String::from_utf8(bytes).or_else(|error| latin(error.as_bytes()).ok_or(error)).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let message = format!("found bytes that are not UTF-8, expected {expected} as UTF-8 text");
+        let text = String::from_utf8_lossy(error.as_bytes());
+        ErrorKind::File.error(message).at_offset(path, &text, valid)
+    })?;
     if text.trim_start_matches('\u{feff}').trim().is_empty() {
         return Err(ErrorKind::File.error(format!("the file is empty, expected {expected}")).in_file(path));
     }

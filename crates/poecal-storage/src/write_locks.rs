@@ -115,9 +115,8 @@ pub fn hold(
             }
         }
         let other = if other.is_empty() { "another run".to_owned() } else { other };
-        let message = format!(
-            "found {what} in use by {other}, expected one run at a time: wait for it, as by --wait 60s"
-        );
+        let message =
+            format!("found {what} in use by {other}, expected one run at a time: wait for it, as by --wait 60s");
         return Err(ErrorKind::File.error(message).in_file(place));
     }
 }

@@ -78,8 +78,7 @@ fn deepest_element(text: &str) -> Option<usize> {
 /// are those of unknown elements, and all byte offsets are kept.
 pub fn declare_prefixes(text: &str) -> Cow<'_, str> {
     // A text that will be refused needs no list of its prefixes.
-    let colons =
-        if is_beyond(text, ResourceLimit::Elements.value()) { Vec::new() } else { undeclared_prefixes(text) };
+    let colons = if is_beyond(text, ResourceLimit::Elements.value()) { Vec::new() } else { undeclared_prefixes(text) };
     if colons.is_empty() {
         return Cow::Borrowed(text);
     }
@@ -163,9 +162,7 @@ pub fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document
             .at_offset(path, text, offset));
     }
     if is_beyond(text, ResourceLimit::Elements.value()) {
-        return Err(ErrorKind::Syntax
-            .error(ResourceLimit::Elements.exceeded_error("an XML file"))
-            .in_file(path));
+        return Err(ErrorKind::Syntax.error(ResourceLimit::Elements.exceeded_error("an XML file")).in_file(path));
     }
     let nodes_limit = u32::try_from(ResourceLimit::Elements.value()).unwrap_or(u32::MAX);
     let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
@@ -281,8 +278,7 @@ impl<'a> XmlSource<'a> {
         };
         match children.find(|&second| anew || first.map(says) != Some(says(second))) {
             Some(second) => {
-                let line =
-                    first.map_or(0, |first| position(self.document.input_text(), first.range().start).0);
+                let line = first.map_or(0, |first| position(self.document.input_text(), first.range().start).0);
                 let message = format!(
                     "found a second <{name}> in {of}, expected one: the first is in line {line}, leave one out"
                 );
@@ -293,18 +289,11 @@ impl<'a> XmlSource<'a> {
     }
 
     /// A required attribute, not empty; `of` names its owner.
-    pub fn require_attribute(
-        &self,
-        node: Node<'a, 'a>,
-        name: &str,
-        of: &str,
-    ) -> Result<(&'a str, Attribute<'a, 'a>)> {
+    pub fn require_attribute(&self, node: Node<'a, 'a>, name: &str, of: &str) -> Result<(&'a str, Attribute<'a, 'a>)> {
         match node.attribute_node(name) {
             Some(attribute) if !attribute.value().trim().is_empty() => Ok((attribute.value(), attribute)),
-            Some(attribute) => Err(self.error_at(
-                attribute.range().start,
-                format!("{of} has an empty attribute `{name}`, expected a value"),
-            )),
+            Some(attribute) => Err(self
+                .error_at(attribute.range().start, format!("{of} has an empty attribute `{name}`, expected a value"))),
             None => Err(self.error(node, format!("{of} has no attribute `{name}`, expected {name}=\"...\""))),
         }
     }
@@ -315,22 +304,12 @@ impl<'a> XmlSource<'a> {
     }
 
     /// The numbers of an attribute, if present.
-    pub fn numbers<const N: usize>(
-        &self,
-        node: Node<'a, 'a>,
-        name: &str,
-        of: &str,
-    ) -> Result<Option<[f64; N]>> {
+    pub fn numbers<const N: usize>(&self, node: Node<'a, 'a>, name: &str, of: &str) -> Result<Option<[f64; N]>> {
         self.numbers_up_to(node, name, of, LARGEST_NUMBER)
     }
 
     /// The numbers of an attribute that states limits, if present: these may be infinite, or of any size.
-    pub fn bounds<const N: usize>(
-        &self,
-        node: Node<'a, 'a>,
-        name: &str,
-        of: &str,
-    ) -> Result<Option<[f64; N]>> {
+    pub fn bounds<const N: usize>(&self, node: Node<'a, 'a>, name: &str, of: &str) -> Result<Option<[f64; N]>> {
         self.numbers_up_to(node, name, of, f64::INFINITY)
     }
 
@@ -368,13 +347,10 @@ impl<'a> XmlSource<'a> {
     }
 
     fn parsed(&self, word: &str, offset: usize, (name, of): (&str, &str), largest: f64) -> Result<f64> {
-        let found = |expected: &str| {
-            self.error_at(offset, format!("found `{word}` in `{name}` of {of}, expected {expected}"))
-        };
+        let found =
+            |expected: &str| self.error_at(offset, format!("found `{word}` in `{name}` of {of}, expected {expected}"));
         if word.contains("${") || word.contains("$(") {
-            return Err(found(
-                "a number: this is a xacro file, expand it first with `xacro robot.xacro > robot.urdf`",
-            ));
+            return Err(found("a number: this is a xacro file, expand it first with `xacro robot.xacro > robot.urdf`"));
         }
         let number: f64 = word.parse().map_err(|_| found("a number"))?;
         if number.is_nan() || number.is_infinite() && largest.is_finite() {
@@ -413,13 +389,9 @@ mod tests {
         let readable = declare_prefixes(text);
         assert_eq!(
             readable,
-            text.replace("<s:camera", "<s_camera")
-                .replace("/s:camera", "/s_camera")
-                .replace("t:size", "t_size")
+            text.replace("<s:camera", "<s_camera").replace("/s:camera", "/s_camera").replace("t:size", "t_size")
         );
-        assert!(
-            parsed(&readable, Path::new("r"), "XML").is_ok() && parsed(text, Path::new("r"), "XML").is_err()
-        );
+        assert!(parsed(&readable, Path::new("r"), "XML").is_ok() && parsed(text, Path::new("r"), "XML").is_err());
         for broken in ["<a:", "<a b:c=\"", "<!-- <a:b>", "<a:b<c:d>", "", "<:a/>", "<a:/>"] {
             assert_eq!(super::declare_prefixes(broken).len(), broken.len());
         }
@@ -430,9 +402,7 @@ mod tests {
         let few = limits::current_limits().with_limit(ResourceLimit::Elements, 10);
         let of = |inside: &str| {
             let text = format!("<r>{inside}</r>");
-            limits::run_with_limits(few, || {
-                parsed(&declare_prefixes(&text), Path::new("r"), "XML").map(|_| ())
-            })
+            limits::run_with_limits(few, || parsed(&declare_prefixes(&text), Path::new("r"), "XML").map(|_| ()))
         };
         assert!(of(&"<a b='1' c='2'/>".repeat(8)).is_ok());
         for beyond in ["<a/>".repeat(19), "<s:a/>".repeat(19), "<a/>".repeat(11), "= ".repeat(41)] {
@@ -445,8 +415,7 @@ mod tests {
     #[test]
     fn only_an_element_of_very_many_attributes_is_crowded() {
         let attributes = |count: usize| -> String { (0..count).map(|k| format!(" a{k}='\"1'")).collect() };
-        let of =
-            |count| format!("<robot>\n<!-- {} --><link{}/></robot>", "\"\" ".repeat(5000), attributes(count));
+        let of = |count| format!("<robot>\n<!-- {} --><link{}/></robot>", "\"\" ".repeat(5000), attributes(count));
         assert_eq!(crowded_element(&of(1000)), None);
         let text = of(1001);
         assert_eq!(crowded_element(&text), text.find("<link"));

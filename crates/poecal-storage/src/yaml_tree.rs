@@ -107,8 +107,7 @@ fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<
             if !words.starts_with("{\"") && words != "[{\"" {
                 return Ok(None);
             }
-            let message =
-                format!("found broken JSON ({}), expected {expected}", escape_invisible(&error.to_string()));
+            let message = format!("found broken JSON ({}), expected {expected}", escape_invisible(&error.to_string()));
             return Err(Error::new(ErrorKind::Syntax, message).at_line(path, error.line()));
         }
         let piece = rest.get(..values.byte_offset() - start).unwrap_or_default();

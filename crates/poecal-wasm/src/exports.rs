@@ -1,9 +1,6 @@
 //! Interface of the module to JavaScript. The caller obtains memory by `allocate`, writes a request there, and calls `run`, which returns the address
 //! of an answer: its length as a number of 32 bits, and its bytes. `release` frees memory of either.
-#![expect(
-    unsafe_code,
-    reason = "places in the memory come from JavaScript, and are what `allocate` and `run` gave"
-)]
+#![expect(unsafe_code, reason = "places in the memory come from JavaScript, and are what `allocate` and `run` gave")]
 
 use std::alloc::{Layout, alloc, dealloc};
 use std::sync::{Mutex, PoisonError};

@@ -51,13 +51,9 @@ pub fn run(request: RunRequest) -> Answer {
     let disk = MemoryDisk::new(request.input);
     for (path, bytes) in request.files {
         if let Err(error) = disk.put(Path::new(&path), bytes) {
-            let err = format!(
-                "error: {path}: the file cannot be put on the disk ({error}), expected a path of its own\n"
-            );
-            return Answer {
-                said: CapturedOutput { code: 2, err, ..CapturedOutput::default() },
-                ..Answer::default()
-            };
+            let err =
+                format!("error: {path}: the file cannot be put on the disk ({error}), expected a path of its own\n");
+            return Answer { said: CapturedOutput { code: 2, err, ..CapturedOutput::default() }, ..Answer::default() };
         }
     }
     let words = std::iter::once("poecal".to_owned()).chain(request.words).map(OsString::from);

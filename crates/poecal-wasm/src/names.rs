@@ -101,9 +101,7 @@ impl PathNames {
             (_, Some(_)) if !replaces => return Err(ErrorKind::AlreadyExists.into()),
             (PathEntry::File(_), Some(PathEntry::Folder)) => return Err(ErrorKind::IsADirectory.into()),
             (PathEntry::Folder, Some(PathEntry::File(_))) => return Err(ErrorKind::NotADirectory.into()),
-            (PathEntry::Folder, Some(PathEntry::Folder))
-                if from != to && self.entries_below(to).next().is_some() =>
-            {
+            (PathEntry::Folder, Some(PathEntry::Folder)) if from != to && self.entries_below(to).next().is_some() => {
                 return Err(ErrorKind::DirectoryNotEmpty.into());
             }
             _ => {}

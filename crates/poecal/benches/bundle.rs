@@ -39,8 +39,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rows = made.data.all_rows();
     let both = [PictureUnknown::Lens(0), PictureUnknown::Markers(0)];
     let pictures = &made.data.pictures;
-    let unknowns =
-        PictureUnknowns::new(&pictures.cameras, &pictures.boards, if is_free { &both } else { &[] });
+    let unknowns = PictureUnknowns::new(&pictures.cameras, &pictures.boards, if is_free { &both } else { &[] });
     let count = unknowns.count();
     std::fs::write(path, problem(&robot, &made, &start, &unknowns))?;
     let fit = || -> Option<BundleOptimum> {
@@ -62,8 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error::Result<SimulatedPictures> {
-    let session =
-        Simulation { count, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
+    let session = Simulation { count, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
     let usual = PictureSimulation::with_usual_camera(session, true);
     let lens = Lens { distortion: Distortion::Brown(DISTORTION), ..usual.lens };
     let board = Board::chessboard("board", [9, 6], 0.03).unwrap_or_default();
@@ -109,9 +107,7 @@ fn problem(robot: &Robot, made: &SimulatedPictures, start: &Estimate, numbers: &
     };
     let rows_of = |pose: &Pose| -> Vec<f64> {
         (0..3)
-            .flat_map(|i| {
-                [0, 1, 2, 3].map(|j| if j < 3 { pose.rotation[(i, j)] } else { pose.translation[i] })
-            })
+            .flat_map(|i| [0, 1, 2, 3].map(|j| if j < 3 { pose.rotation[(i, j)] } else { pose.translation[i] }))
             .collect()
     };
     let counts = [robot.joints.len(), board.points.len(), data.len()];

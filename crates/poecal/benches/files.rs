@@ -56,9 +56,9 @@ fn read_text(bencher: Bencher<'_, '_>, decimals: Option<usize>) {
     let text = table(&made, decimals);
     let path = std::env::temp_dir().join(format!("poecal_bench_{}.csv", std::process::id()));
     std::fs::write(&path, &text).expect("a folder for temporary files");
-    bencher.counter(BytesCount::of_str(&text)).bench_local(|| {
-        black_box(read(&[&path], &made.nominal, &ReadOptions::default()).expect("our own form"))
-    });
+    bencher
+        .counter(BytesCount::of_str(&text))
+        .bench_local(|| black_box(read(&[&path], &made.nominal, &ReadOptions::default()).expect("our own form")));
     std::fs::remove_file(&path).expect("the file just written");
 }
 
@@ -76,11 +76,9 @@ fn write_residuals(bencher: Bencher<'_, '_>) {
 
 fn write(bencher: Bencher<'_, '_>, at_hand: bool) {
     let made = session();
-    let calibration =
-        calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a calibration");
+    let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a calibration");
     let residuals = Residuals::from_calibration(&made.data, &calibration);
-    let rows =
-        if at_hand { ResidualRows::AtHand(&residuals) } else { ResidualRows::Of(&made.data, &calibration) };
+    let rows = if at_hand { ResidualRows::AtHand(&residuals) } else { ResidualRows::Of(&made.data, &calibration) };
     bencher
         .counter(BytesCount::new(residuals.text().len()))
         .bench_local(|| rows.write_to(&mut std::io::sink()).expect("a sink takes all"));

@@ -20,11 +20,8 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with("--")).collect();
     let number = |at: usize| arguments.get(at).and_then(|text| text.parse::<usize>().ok());
     let (rows, repeats) = (number(0).unwrap_or(500), number(1).unwrap_or(0));
-    let kind = if arguments.get(2).is_some_and(|word| word == "points") {
-        SessionKind::POINT
-    } else {
-        SessionKind::POSE
-    };
+    let kind =
+        if arguments.get(2).is_some_and(|word| word == "points") { SessionKind::POINT } else { SessionKind::POSE };
     let is_alone = arguments.get(3).is_some_and(|word| word == "alone");
     let (noise_position_m, noise_rotation_rad) = (5e-5, 5e-4);
     let noise = Noise::new(noise_position_m, noise_rotation_rad);

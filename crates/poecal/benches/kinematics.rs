@@ -18,10 +18,7 @@ const ROWS: usize = 4096;
 const TURNS: usize = 60;
 
 fn main() -> Result<(), poecal_numerics::error::Error> {
-    println!(
-        "{:<34}{:>10}{:>10}{:>10}{:>10}{:>8}",
-        "ns a configuration", "one", "median", "eight", "median", "ratio"
-    );
+    println!("{:<34}{:>10}{:>10}{:>10}{:>10}{:>8}", "ns a configuration", "one", "median", "eight", "median", "ratio");
     for (name, robot) in [("elbow", simulate::elbow()), ("elbow with all terms", with_terms())] {
         let kinematics = Kinematics::new(&robot, &[])?;
         let (arm, _) = robot.arm(&[])?;
@@ -59,9 +56,7 @@ fn with_terms() -> Robot {
         if robot.joints[joint].give_of.is_none() {
             terms.extend([Term::OFFSET, Term::RATIO, TermKind::Coupled.with_index((joint + 1) % 6)]);
             terms.extend(
-                [1, 2].iter().flat_map(|&order| {
-                    [TermKind::Sine, TermKind::Cosine].map(|kind| kind.with_number(order))
-                }),
+                [1, 2].iter().flat_map(|&order| [TermKind::Sine, TermKind::Cosine].map(|kind| kind.with_number(order))),
             );
         }
         robot.terms.extend(terms.into_iter().map(|term| JointTerm { joint, term, coefficient: 3e-4 }));

@@ -121,8 +121,7 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     let mut free = screw_axes(start.kinds());
     free.push(Parameter::TargetFrame(TargetFrame::new(0)));
     let mut generator = ChaCha8Rng::seed_from_u64(1);
-    let trials: Vec<Vec<Measurement>> =
-        (0..1_000).map(|_| disturb_measurements(&made.data, &mut generator)).collect();
+    let trials: Vec<Vec<Measurement>> = (0..1_000).map(|_| disturb_measurements(&made.data, &mut generator)).collect();
     let length_m = made.nominal.reach_m() / 3.0;
     bencher.bench_local(|| {
         let packed = PackedValues::new(&made.nominal, made.data.all_readings(), 6);
@@ -161,8 +160,7 @@ fn bench_calibration(bencher: Bencher<'_, '_>, rows: usize, corrections: Correct
 /// The diagnosis of a clean session must cost far less than a fit, since it follows every calibration.
 #[divan::bench]
 fn diagnose_what_is_clean(bencher: Bencher<'_, '_>) {
-    let made =
-        Simulation::default().run(&elbow(), SessionKind::POINT).expect("a simulation of a finite robot");
+    let made = Simulation::default().run(&elbow(), SessionKind::POINT).expect("a simulation of a finite robot");
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a fit");
     let options = forensics::DiagnosisOptions {
         calibrated: Some(&calibration.models.calibrated),

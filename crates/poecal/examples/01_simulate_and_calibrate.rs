@@ -31,11 +31,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
     let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;
     println!("{} poses fitted, {} held out", calibration.accuracy.training.count, held_out.count);
-    for (name, model) in [
-        ("nominal", held_out.nominal),
-        ("registered", held_out.registered),
-        ("calibrated", held_out.calibrated),
-    ] {
+    for (name, model) in
+        [("nominal", held_out.nominal), ("registered", held_out.registered), ("calibrated", held_out.calibrated)]
+    {
         let rotation = model.rotation_deg().ok_or("no orientation was measured")?;
         println!("{name:<12} {:8.4} mm {:8.4} deg (RMS)", model.position_mm().rms, rotation.rms);
     }

@@ -36,11 +36,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [a, b, c]: [f64; 3] = (model.robot.home.translation * 1e3).into();
     println!("the reflector is at ({x:.3}, {y:.3}, {z:.3}) mm at zero, nominal ({a:.3}, {b:.3}, {c:.3}) mm");
     let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;
-    for (name, model) in [
-        ("nominal", held_out.nominal),
-        ("registered", held_out.registered),
-        ("calibrated", held_out.calibrated),
-    ] {
+    for (name, model) in
+        [("nominal", held_out.nominal), ("registered", held_out.registered), ("calibrated", held_out.calibrated)]
+    {
         println!("{name:<12} {:8.4} mm (RMS) on {} points", model.position_mm().rms, held_out.count);
     }
     let found = &calibration.identifiability;

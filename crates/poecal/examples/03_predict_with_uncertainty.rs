@@ -20,8 +20,8 @@
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use poecal::{
-    CalibrationFile, CalibrationOptions, Inputs, Model, ModelSource, PredictionFrame, SessionKind,
-    Simulation, calibrate, predict_readings,
+    CalibrationFile, CalibrationOptions, Inputs, Model, ModelSource, PredictionFrame, SessionKind, Simulation,
+    calibrate, predict_readings,
 };
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
@@ -47,14 +47,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seen = truth.observations.iter().map(|row| row.measurement.pose().translation);
     let errors_mm: Vec<f64> =
         found.poses.iter().zip(seen).map(|(pose, seen)| 1e3 * (pose.translation - seen).norm()).collect();
-    let rms =
-        |values: &[f64]| (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt();
+    let rms = |values: &[f64]| (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt();
     let expected_mm: Vec<f64> = doubts.iter().map(|(error, _)| 1e3 * error.sigma_position_m()).collect();
-    let inside_bound = doubts
-        .iter()
-        .zip(&errors_mm)
-        .filter(|((error, _), mm)| **mm <= 1e3 * error.bound_position_m())
-        .count();
+    let inside_bound =
+        doubts.iter().zip(&errors_mm).filter(|((error, _), mm)| **mm <= 1e3 * error.bound_position_m()).count();
     println!("expected     {:.4} mm (RMS) in {} configurations", rms(&expected_mm), expected_mm.len());
     println!("true         {:.4} mm (RMS)", rms(&errors_mm));
     println!("inside their 95 % bounds: {inside_bound}");

@@ -19,8 +19,7 @@
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use poecal::{
-    CalibrationFile, CalibrationOptions, Inputs, Model, PlannedSession, SessionKind, Simulation, calibrate,
-    identify,
+    CalibrationFile, CalibrationOptions, Inputs, Model, PlannedSession, SessionKind, Simulation, calibrate, identify,
 };
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
@@ -47,13 +46,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let options = CalibrationOptions { held_out: Some(0.0), ..CalibrationOptions::default() };
     let calibration = calibrate(&nominal, &made.data, &options)?;
-    let judgement =
-        CalibrationFile::new(&calibration, &made.data, Inputs::default()).judge(&others, false, false)?;
+    let judgement = CalibrationFile::new(&calibration, &made.data, Inputs::default()).judge(&others, false, false)?;
     let error = judgement.calibrated.position_mm();
-    println!(
-        "{} other points: error {:.4} mm (RMS), {:.4} mm at most",
-        judgement.count, error.rms, error.max
-    );
+    println!("{} other points: error {:.4} mm (RMS), {:.4} mm at most", judgement.count, error.rms, error.max);
     let kept = judgement.promised.ok_or("a calibration has bounds")?.position_mm();
     println!(
         "expected {:.4} mm with noise; {:.1} % are inside their 95 % bounds",

@@ -58,8 +58,8 @@
 
 pub use poecal_arm::{AllBranches, Arm, Branches, HeldBranches, lie};
 pub use poecal_calibrate::{
-    Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation,
-    Judgement, Loss, ModelAccuracy, RobustLoss, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
+    Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation, Judgement, Loss,
+    ModelAccuracy, RobustLoss, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
 };
 pub use poecal_fit::analysis::{Direction, ExpectedUncertainty, Identifiability, PlannedSession, identify};
 pub use poecal_fit::forensics::Diagnosis;

@@ -43,9 +43,7 @@ impl<const N: usize> Branches<N> {
 
     /// Adds a configuration, unless it is there or there is no room.
     pub(super) fn add(&mut self, q: &[f64; N], same: f64) {
-        if self.count < MOST_BRANCHES
-            && !self.as_slice().iter().any(|other| largest_difference(q, other) < same)
-        {
+        if self.count < MOST_BRANCHES && !self.as_slice().iter().any(|other| largest_difference(q, other) < same) {
             self.values[self.count] = *q;
             self.count += 1;
         }

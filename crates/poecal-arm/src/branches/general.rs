@@ -110,11 +110,7 @@ impl GeneralArm {
     }
 
     /// Right side by 1, cos and sin of the first two angles: eight unknown products, and the constant part.
-    fn right(
-        &self,
-        axes: &[RevoluteAxis; 6],
-        motion: &Pose,
-    ) -> ([[f64; UNKNOWN]; EQUATIONS], [f64; EQUATIONS]) {
+    fn right(&self, axes: &[RevoluteAxis; 6], motion: &Pose) -> ([[f64; UNKNOWN]; EQUATIONS], [f64; EQUATIONS]) {
         let [a1, a2, .., a6] = axes;
         let (p, l) = (motion.act(&a6.point), motion.rotation * a6.w);
         let mut samples = [[[0.0; EQUATIONS]; 3]; 3];
@@ -188,8 +184,7 @@ impl GeneralArm {
             let mut free = 0.0;
             for (equation, &share) in row.iter().enumerate() {
                 free += share * constant[equation];
-                for (out, of) in
-                    out.iter_mut().flatten().flatten().zip(self.left[equation].iter().flatten().flatten())
+                for (out, of) in out.iter_mut().flatten().flatten().zip(self.left[equation].iter().flatten().flatten())
                 {
                     *out += share * of;
                 }
@@ -230,8 +225,7 @@ impl GeneralArm {
                 it.1 += share * sample * s;
             }
         }
-        let roots: AngleList<24> =
-            TrigonometricPolynomial { coefficients }.roots(48, RootTolerance::rounding(BEYOND));
+        let roots: AngleList<24> = TrigonometricPolynomial { coefficients }.roots(48, RootTolerance::rounding(BEYOND));
         for &q3 in roots.as_slice() {
             let (c, s) = cosine_and_sine(q3);
             // t and t² of the fourth times the powers of the fifth.

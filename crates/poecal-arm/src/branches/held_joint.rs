@@ -50,8 +50,7 @@ fn ways(arm: &Arm, joint: usize, value: f64, ranking: Option<MethodRanking>) -> 
     let senses: &[f64; 7] = arm.senses()?.try_into().ok()?;
     let moved = all[joint].exp(value * senses[joint]);
     let other = |k: usize| if k < joint { k } else { k + 1 };
-    let screws: [Screw; 6] =
-        core::array::from_fn(|k| if k < joint { all[k] } else { all[k + 1].transform(&moved) });
+    let screws: [Screw; 6] = core::array::from_fn(|k| if k < joint { all[k] } else { all[k + 1].transform(&moved) });
     let senses = core::array::from_fn(|k| senses[other(k)]);
     Some(SolutionMethods::new(&screws, &(moved * *arm.home()), (arm.reach_m(), senses), ranking))
 }
@@ -79,9 +78,8 @@ impl HeldBranches {
         }
         // Largest distance from an arm with branches in closed form.
         let off = |joint: usize| {
-            let at = |value: &f64| {
-                ways(arm, joint, *value, None).map_or(f64::INFINITY, |it| it.distance_from_closed_form())
-            };
+            let at =
+                |value: &f64| ways(arm, joint, *value, None).map_or(f64::INFINITY, |it| it.distance_from_closed_form());
             VALUES.iter().map(at).fold(0.0, f64::max)
         };
         let joint = match joint {
@@ -183,9 +181,7 @@ impl HeldBranches {
 
     /// First result at values of the held joint with increasing distance from a start.
     fn search(&self, start: f64, find: impl Fn(f64) -> Option<[f64; 7]>) -> Option<[f64; 7]> {
-        (0..=MOST_MOVES)
-            .map(|it| STEP * f64::from(it))
-            .find_map(|by| find(start + by).or_else(|| find(start - by)))
+        (0..=MOST_MOVES).map(|it| STEP * f64::from(it)).find_map(|by| find(start + by).or_else(|| find(start - by)))
     }
 }
 

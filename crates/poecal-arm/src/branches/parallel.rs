@@ -42,12 +42,7 @@ impl ParallelAxesArm {
         }
         let bends = axes[0].w.cross(&along).norm() > 0.1 && axes[4].w.cross(&along).norm() > 0.1;
         bends.then_some((
-            ParallelAxesArm {
-                axes,
-                wrist,
-                along,
-                care: RootTolerance::from_deviation(angle.max(apart / reach_m)),
-            },
+            ParallelAxesArm { axes, wrist, along, care: RootTolerance::from_deviation(angle.max(apart / reach_m)) },
             angle,
             apart,
         ))

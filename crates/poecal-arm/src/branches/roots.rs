@@ -77,8 +77,7 @@ impl<const N: usize> AngleList<N> {
     /// Marks those that have another one near.
     fn mark(&mut self, almost: f64) {
         for k in 0..self.count {
-            let near =
-                |other: usize| other != k && wrap_angle(self.values[k] - self.values[other]).abs() < almost;
+            let near = |other: usize| other != k && wrap_angle(self.values[k] - self.values[other]).abs() < almost;
             self.touching[k] |= (0..self.count).any(near);
         }
     }

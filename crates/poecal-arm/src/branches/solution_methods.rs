@@ -92,8 +92,8 @@ impl SolutionMethods {
         let mut closed: Option<(f64, ClosedForm, bool)> = None;
         for is_reversed in [false, true] {
             let axes = reversed(&axes, is_reversed);
-            let wrist = SphericalWristArm::new(&axes, reach_m)
-                .map(|(it, apart)| (apart / reach_m, ClosedForm::Wrist(it)));
+            let wrist =
+                SphericalWristArm::new(&axes, reach_m).map(|(it, apart)| (apart / reach_m, ClosedForm::Wrist(it)));
             let parallel = ParallelAxesArm::new(&axes, reach_m)
                 .map(|(it, angle, apart)| (f64::max(angle, apart / reach_m), ClosedForm::Parallel(it)));
             for (off, it) in wrist.into_iter().chain(parallel) {
@@ -172,8 +172,7 @@ impl SolutionMethods {
         let mut starts = IterationStarts::EMPTY;
         if let Some((_, closed, is_reversed)) = &self.closed {
             let motion = self.motion(target, *is_reversed);
-            let push =
-                &mut |q: [f64; 6], is_touching: bool| starts.add(self.readings(q, *is_reversed), is_touching);
+            let push = &mut |q: [f64; 6], is_touching: bool| starts.add(self.readings(q, *is_reversed), is_touching);
             match closed {
                 ClosedForm::Wrist(wrist) => wrist.seeds(&motion, push),
                 ClosedForm::Parallel(parallel) => parallel.seeds(&motion, push),

@@ -18,10 +18,7 @@ pub(super) fn functions(p: &Vector3<f64>, l: &Vector3<f64>) -> [f64; EQUATIONS] 
     let (square, product) = (p.norm_squared(), p.dot(l));
     let moment = p.cross(l);
     let mirrored = l * square - p * (2.0 * product);
-    [
-        p.x, p.y, p.z, l.x, l.y, l.z, square, product, moment.x, moment.y, moment.z, mirrored.x, mirrored.y,
-        mirrored.z,
-    ]
+    [p.x, p.y, p.z, l.x, l.y, l.z, square, product, moment.x, moment.y, moment.z, mirrored.x, mirrored.y, mirrored.z]
 }
 
 /// Mean and first harmonics of three samples over a turn.

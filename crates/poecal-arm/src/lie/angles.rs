@@ -110,12 +110,8 @@ impl Angles {
     #[must_use]
     pub fn rotation(self, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
         match self {
-            Angles::Intrinsic([i, j, k]) => {
-                rotation::about(i, a) * rotation::about(j, b) * rotation::about(k, c)
-            }
-            Angles::Extrinsic([i, j, k]) => {
-                rotation::about(k, c) * rotation::about(j, b) * rotation::about(i, a)
-            }
+            Angles::Intrinsic([i, j, k]) => rotation::about(i, a) * rotation::about(j, b) * rotation::about(k, c),
+            Angles::Extrinsic([i, j, k]) => rotation::about(k, c) * rotation::about(j, b) * rotation::about(i, a),
             Angles::RotationVector => rotation::exp(&Vector3::new(a, b, c)),
         }
     }
@@ -245,8 +241,7 @@ mod tests {
         for angles in Angles::all() {
             assert_eq!(angles.to_string().parse(), Ok(angles));
         }
-        for bad in ["intrinsic_xx", "intrinsic_xxy", "extrinsic_xyzx", "intrinsic_abc", "euler", "extrinsic_"]
-        {
+        for bad in ["intrinsic_xx", "intrinsic_xxy", "extrinsic_xyzx", "intrinsic_abc", "euler", "extrinsic_"] {
             assert_eq!(bad.parse::<Angles>(), Err(UnknownConvention), "{bad}");
         }
     }

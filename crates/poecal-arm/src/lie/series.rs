@@ -14,10 +14,7 @@ pub const SWITCH: f64 = 1e-2;
 #[must_use]
 pub fn sinc(angle_squared: f64) -> f64 {
     if angle_squared < SWITCH {
-        horner(
-            angle_squared,
-            &[1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0],
-        )
+        horner(angle_squared, &[1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0])
     } else {
         let angle = angle_squared.sqrt();
         angle.sin() / angle
@@ -45,14 +42,7 @@ pub fn sincc(angle_squared: f64) -> f64 {
     if angle_squared < SWITCH {
         horner(
             angle_squared,
-            &[
-                1.0 / 6.0,
-                -1.0 / 120.0,
-                1.0 / 5040.0,
-                -1.0 / 362_880.0,
-                1.0 / 39_916_800.0,
-                -1.0 / 6_227_020_800.0,
-            ],
+            &[1.0 / 6.0, -1.0 / 120.0, 1.0 / 5040.0, -1.0 / 362_880.0, 1.0 / 39_916_800.0, -1.0 / 6_227_020_800.0],
         )
     } else {
         let angle = angle_squared.sqrt();
@@ -61,14 +51,8 @@ pub fn sincc(angle_squared: f64) -> f64 {
 }
 
 /// The series of [`cotc`] in `θ²`.
-pub const COTC: [f64; 6] = [
-    1.0 / 12.0,
-    1.0 / 720.0,
-    1.0 / 30_240.0,
-    1.0 / 1_209_600.0,
-    1.0 / 47_900_160.0,
-    691.0 / 1_307_674_368_000.0,
-];
+pub const COTC: [f64; 6] =
+    [1.0 / 12.0, 1.0 / 720.0, 1.0 / 30_240.0, 1.0 / 1_209_600.0, 1.0 / 47_900_160.0, 691.0 / 1_307_674_368_000.0];
 
 /// The series of `asin(s) / s` in `s²`.
 pub const ARCSINE: [f64; 12] = arcsine();
@@ -102,10 +86,7 @@ pub fn left_jacobian(angle_squared: f64) -> (f64, f64) {
     if x < SWITCH {
         (
             horner(x, &[1.0 / 24.0, -1.0 / 360.0, 1.0 / 13_440.0, -1.0 / 907_200.0, 1.0 / 95_800_320.0]),
-            horner(
-                x,
-                &[1.0 / 120.0, -1.0 / 2_520.0, 1.0 / 120_960.0, -1.0 / 9_979_200.0, 1.0 / 1_245_404_160.0],
-            ),
+            horner(x, &[1.0 / 120.0, -1.0 / 2_520.0, 1.0 / 120_960.0, -1.0 / 9_979_200.0, 1.0 / 1_245_404_160.0]),
         )
     } else {
         // d is (2 + cos θ - 3 sinc) / (2 θ⁴), written with sincc to cancel less.

@@ -56,10 +56,7 @@ impl Twist {
     /// The twist of six numbers `[v; ω]`, linear part first.
     #[must_use]
     pub fn from_vector(vector: &Vector6<f64>) -> Self {
-        Twist::new(
-            Vector3::new(vector[0], vector[1], vector[2]),
-            Vector3::new(vector[3], vector[4], vector[5]),
-        )
+        Twist::new(Vector3::new(vector[0], vector[1], vector[2]), Vector3::new(vector[3], vector[4], vector[5]))
     }
 
     /// `ad_ξ = [[ω̂, v̂], [0, ω̂]]` acting on `[v; ω]`: theory.md §1 (2).
@@ -110,10 +107,8 @@ mod tests {
     #[test]
     fn inverse_left_jacobian_is_the_inverse() {
         for scale in [0.0, 1e-8, 0.05, 0.099, 0.101, 0.2, 1.0, 3.1] {
-            let twist = Twist::new(
-                Vector3::new(0.3, -0.2, 0.5) * (scale + 0.1),
-                Vector3::new(0.6, -0.48, 0.64) * scale,
-            );
+            let twist =
+                Twist::new(Vector3::new(0.3, -0.2, 0.5) * (scale + 0.1), Vector3::new(0.6, -0.48, 0.64) * scale);
             let product = twist.left_jacobian() * twist.inverse_left_jacobian();
             let error = (product - Matrix6::identity()).norm();
             println!("scale {scale}: {error:.1e}");

@@ -237,13 +237,7 @@ impl<const N: usize, const J: usize> ConfigurationBatch<N, J> {
 
     /// The same addition with a moment.
     #[inline(always)]
-    fn moment_moves(
-        &mut self,
-        of: &Moment,
-        real: &RealChain,
-        motion: &[VectorBatch<N>; 2],
-        share: &NumberBatch<N>,
-    ) {
+    fn moment_moves(&mut self, of: &Moment, real: &RealChain, motion: &[VectorBatch<N>; 2], share: &NumberBatch<N>) {
         let (v, w) = (&mut self.v, &mut self.w);
         of.slopes(
             real,

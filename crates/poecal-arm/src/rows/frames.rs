@@ -11,11 +11,7 @@ pub(crate) type VectorBatch<const N: usize> = [NumberBatch<N>; 3];
 
 /// Adds other vectors times a number of each.
 #[inline(always)]
-pub(crate) fn add_times<const N: usize>(
-    to: &mut VectorBatch<N>,
-    of: &VectorBatch<N>,
-    times: &NumberBatch<N>,
-) {
+pub(crate) fn add_times<const N: usize>(to: &mut VectorBatch<N>, of: &VectorBatch<N>, times: &NumberBatch<N>) {
     for l in 0..N {
         for k in 0..3 {
             to[k][l] += of[k][l] * times[l];

@@ -55,10 +55,8 @@ impl Arm {
     /// and `log(R R₀ᵀ)`.
     #[inline(always)]
     pub fn sag_of(&self, readings: &[f64], sag: &mut [[f64; 6]]) {
-        let (mut rows, mut bare) = (
-            ConfigurationBatch::<WIDTH, MOST_JOINTS>::new(),
-            ConfigurationBatch::<WIDTH, MOST_JOINTS>::new(),
-        );
+        let (mut rows, mut bare) =
+            (ConfigurationBatch::<WIDTH, MOST_JOINTS>::new(), ConfigurationBatch::<WIDTH, MOST_JOINTS>::new());
         for (some, out) in readings.chunks(WIDTH * self.joints()).zip(sag.chunks_mut(WIDTH)) {
             load(self, some, &mut rows);
             bare.q = rows.q;

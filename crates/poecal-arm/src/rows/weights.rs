@@ -65,11 +65,7 @@ impl Moment {
 
     /// Value of the joint by its weights.
     #[inline(always)]
-    pub(super) fn values<const N: usize>(
-        &self,
-        real: &RealChain,
-        bodies: &NominalBodies<N>,
-    ) -> NumberBatch<N> {
+    pub(super) fn values<const N: usize>(&self, real: &RealChain, bodies: &NominalBodies<N>) -> NumberBatch<N> {
         let gravity = broadcast(&real.gravity);
         let (size, axis, _, sum) = self.parts(bodies);
         if self.slides {

@@ -55,8 +55,7 @@ impl Term {
 
     /// Terms without a number that need only a joint's value.
     pub fn unnumbered() -> impl Iterator<Item = Term> {
-        let plain =
-            |it: &Term| it.kind.row().argument <= TermArgument::OwnValue && !it.kind.row().is_numbered();
+        let plain = |it: &Term| it.kind.row().argument <= TermArgument::OwnValue && !it.kind.row().is_numbered();
         TermKind::ALL.into_iter().map(|kind| kind.with_number(0)).filter(plain)
     }
 
@@ -107,10 +106,7 @@ impl Term {
     pub fn needs_gravity(self) -> bool {
         match self.argument() {
             TermArgument::Masses | TermArgument::Weight | TermArgument::Payload => true,
-            TermArgument::Nothing
-            | TermArgument::OwnValue
-            | TermArgument::OtherJoint
-            | TermArgument::Factor => false,
+            TermArgument::Nothing | TermArgument::OwnValue | TermArgument::OtherJoint | TermArgument::Factor => false,
         }
     }
 
@@ -120,20 +116,14 @@ impl Term {
         match self.argument() {
             TermArgument::OtherJoint => self.index() < joints,
             TermArgument::Factor | TermArgument::Payload => self.index() < factors,
-            TermArgument::Nothing | TermArgument::OwnValue | TermArgument::Masses | TermArgument::Weight => {
-                true
-            }
+            TermArgument::Nothing | TermArgument::OwnValue | TermArgument::Masses | TermArgument::Weight => true,
         }
     }
 
     /// The same term with other indices of joints.
     #[must_use]
     pub fn reindex(self, index: impl Fn(usize) -> usize) -> Self {
-        if self.argument() == TermArgument::OtherJoint {
-            self.kind.with_index(index(self.index()))
-        } else {
-            self
-        }
+        if self.argument() == TermArgument::OtherJoint { self.kind.with_index(index(self.index())) } else { self }
     }
 
     /// Names of all terms as one pattern.
@@ -238,8 +228,7 @@ mod tests {
         ] {
             assert_eq!((name.parse::<Term>(), term.to_string().as_str()), (Ok(term), name));
         }
-        let expected =
-            "offset, ratio, sin1, cos1, …, masses, sag1, …, coupled1, …, factor1, … or payload1, …";
+        let expected = "offset, ratio, sin1, cos1, …, masses, sag1, …, coupled1, …, factor1, … or payload1, …";
         assert_eq!(Term::names(), expected);
         assert!("sin0".parse::<Term>().is_err() && "sin256".parse::<Term>().is_err());
     }

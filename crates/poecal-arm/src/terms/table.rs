@@ -115,8 +115,7 @@ impl TermRow {
 
 /// 0.1°, or 0.2 mm.
 const TENTH: [f64; 2] = [0.1f64.to_radians(), 2e-4];
-const PERIODIC: [Option<TermGroup>; 3] =
-    [Some(TermGroup::Harmonics), Some(TermGroup::Wobble), Some(TermGroup::Runout)];
+const PERIODIC: [Option<TermGroup>; 3] = [Some(TermGroup::Harmonics), Some(TermGroup::Wobble), Some(TermGroup::Runout)];
 /// 0.01°, or 0.02 mm.
 const HUNDREDTH: [f64; 2] = [0.01f64.to_radians(), 2e-5];
 

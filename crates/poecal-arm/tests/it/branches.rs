@@ -87,10 +87,7 @@ fn all_branches_are_of_six_axes() {
     let axis = Screw::revolute(&Vector3::z(), &Vector3::zeros());
     assert!(AllBranches::new(&Arm::new(&[axis; 7], &Pose::identity()).unwrap()).is_none());
     let slide = Screw::prismatic(&Vector3::z());
-    assert!(
-        AllBranches::new(&Arm::new(&[axis, axis, axis, axis, axis, slide], &Pose::identity()).unwrap())
-            .is_none()
-    );
+    assert!(AllBranches::new(&Arm::new(&[axis, axis, axis, axis, axis, slide], &Pose::identity()).unwrap()).is_none());
     // Six equal axes: there is no solution, and no panic.
     let flat = AllBranches::new(&Arm::new(&[axis; 6], &Pose::identity()).unwrap()).unwrap();
     let _ = flat.branches_at(&Pose::identity());

@@ -9,15 +9,8 @@ use crate::numbers::Numbers;
 /// Joints as (direction, point), and the tip.
 type Drawing = (Vec<(Vector3<f64>, [f64; 3])>, [f64; 3]);
 
-pub(crate) const KINDS: [&str; 7] = [
-    "three parallel axes",
-    "wrist",
-    "wrist, first axes meet",
-    "shoulder",
-    "offset wrist",
-    "general",
-    "general 2",
-];
+pub(crate) const KINDS: [&str; 7] =
+    ["three parallel axes", "wrist", "wrist, first axes meet", "shoulder", "offset wrist", "general", "general 2"];
 
 fn drawing(kind: &str) -> Drawing {
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());

@@ -56,18 +56,11 @@ fn a_target_has_the_branch_it_was_made_with() {
 #[test]
 fn limits_are_kept_by_every_joint_also_the_one_that_is_held() {
     let rigid = arm_of_seven(SEVEN[0], 0.005, 1e-3);
-    let limits: Vec<Option<(f64, f64)>> =
-        [2.9, 2.0, 2.9, 2.0, 2.9, 2.0, 3.0].map(|it| Some((-it, it))).to_vec();
+    let limits: Vec<Option<(f64, f64)>> = [2.9, 2.0, 2.9, 2.0, 2.9, 2.0, 3.0].map(|it| Some((-it, it))).to_vec();
     let joints = rigid.screws().iter().enumerate();
-    let joints = joints.map(|(at, screw)| poecal_arm::ModelJoint {
-        screw: *screw,
-        value: poecal_arm::JointValue::from_reading(at),
-    });
-    let model = poecal_arm::ArmModel {
-        joints: joints.collect(),
-        limits,
-        ..poecal_arm::ArmModel::new(7, rigid.home())
-    };
+    let joints = joints
+        .map(|(at, screw)| poecal_arm::ModelJoint { screw: *screw, value: poecal_arm::JointValue::from_reading(at) });
+    let model = poecal_arm::ArmModel { joints: joints.collect(), limits, ..poecal_arm::ArmModel::new(7, rigid.home()) };
     let arm = Arm::from_model(&model).unwrap();
     let held = HeldBranches::new(&arm, None).unwrap();
     let (mut numbers, mut found) = (Numbers(8), 0);
@@ -79,9 +72,7 @@ fn limits_are_kept_by_every_joint_also_the_one_that_is_held() {
         found += 1;
         let tip = arm.forward_kinematics(&there);
         assert!((tip.translation - target.translation).norm() < 1e-10);
-        assert!(
-            there.iter().zip(arm.limits()).all(|(q, (low, high))| (low - 1e-7..=high + 1e-7).contains(q))
-        );
+        assert!(there.iter().zip(arm.limits()).all(|(q, (low, high))| (low - 1e-7..=high + 1e-7).contains(q)));
     }
     println!("{found} of 300 targets reached within limits");
     // Parts of the redundancy that are narrower than a step of the search may be missed.

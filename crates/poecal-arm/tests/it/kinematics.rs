@@ -21,8 +21,7 @@ fn forward_kinematics_is_the_product_of_exponentials() {
         let arm = Arm::new(&screws, &home).unwrap();
         for _ in 0..20 {
             let q: Vec<f64> = (0..joints).map(|_| 4.0 * numbers.next_number()).collect();
-            let product =
-                screws.iter().zip(&q).fold(Pose::identity(), |pose, (screw, q)| pose * screw.exp(*q));
+            let product = screws.iter().zip(&q).fold(Pose::identity(), |pose, (screw, q)| pose * screw.exp(*q));
             let (found, known) = (arm.forward_kinematics(&q), product * home);
             worst = worst.max((found.translation - known.translation).norm());
             worst = worst.max((found.rotation - known.rotation).norm());

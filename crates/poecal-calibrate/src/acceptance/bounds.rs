@@ -2,9 +2,7 @@
 
 use super::AcceptedStatistic;
 use crate::Statistic;
-use poecal_numerics::distributions::{
-    binomial_at_most, lower_mean_square, upper_mean_square, upper_quantile,
-};
+use poecal_numerics::distributions::{binomial_at_most, lower_mean_square, upper_mean_square, upper_quantile};
 
 /// Probability that a bound does not hold.
 const RISK: f64 = 0.05;
@@ -63,11 +61,7 @@ impl ConfigurationErrors {
             return None;
         }
         if groups < 2.0 || mean == 0.0 {
-            return Some(BoundedStatistic {
-                found: mean.sqrt(),
-                from: 0.0,
-                to: (mean == 0.0).then_some(0.0),
-            });
+            return Some(BoundedStatistic { found: mean.sqrt(), from: 0.0, to: (mean == 0.0).then_some(0.0) });
         }
         let off = |rows: &Vec<MeasuredError>| (square(rows) - mean * rows.len() as f64).powi(2);
         let sum = self.configurations.iter().map(off).sum::<f64>() / (count * count);
@@ -87,8 +81,7 @@ impl ConfigurationErrors {
         };
         let largest = sorted(|rows| rows.iter().map(|row| row.error).max_by(f64::total_cmp));
         let first = sorted(|rows| rows.first().map(|row| row.error));
-        let found =
-            Statistic::from_errors(self.configurations.iter().flatten().map(|row| row.error).collect())?.p95;
+        let found = Statistic::from_errors(self.configurations.iter().flatten().map(|row| row.error).collect())?.p95;
         let count = largest.len();
         // Fewer than k of the errors lie below the quantile with this probability.
         let fewer = |k: usize| k.checked_sub(1).map_or(0.0, |k| binomial_at_most(k, count, KEPT));
@@ -115,11 +108,7 @@ impl ConfigurationErrors {
         let of = |risk: f64| upper_quantile(risk, self.components).sqrt();
         let all = of(RISK / self.rows() as f64) / of(RISK);
         let from = rows().map(|row| row.error - all * row.shown_noise).max_by(f64::total_cmp)?.max(0.0);
-        Some(BoundedStatistic {
-            found: most(|row| row.error)?,
-            from,
-            to: most(|row| row.error + row.possible_noise),
-        })
+        Some(BoundedStatistic { found: most(|row| row.error)?, from, to: most(|row| row.error + row.possible_noise) })
     }
 }
 
@@ -189,9 +178,7 @@ mod tests {
                     let limit = if statistic == AcceptedStatistic::Rms { 1.0 } else { quantile };
                     let (mut passed, mut failed) = (0, 0);
                     for _ in 0..TRIALS {
-                        let rows = (0..count)
-                            .map(|_| vec![error_with_noise(error(kind, &mut random), 0.0)])
-                            .collect();
+                        let rows = (0..count).map(|_| vec![error_with_noise(error(kind, &mut random), 0.0)]).collect();
                         let found = ConfigurationErrors { configurations: rows, components: 3 }
                             .bound_statistic(statistic)
                             .unwrap();
@@ -220,9 +207,7 @@ mod tests {
         let thrice: Vec<Vec<MeasuredError>> = single.iter().map(|rows| rows.repeat(3)).collect();
         for statistic in [AcceptedStatistic::Rms, AcceptedStatistic::P95] {
             let of = |rows: &Vec<Vec<MeasuredError>>| {
-                ConfigurationErrors { configurations: rows.clone(), components: 1 }
-                    .bound_statistic(statistic)
-                    .unwrap()
+                ConfigurationErrors { configurations: rows.clone(), components: 1 }.bound_statistic(statistic).unwrap()
             };
             let (one, three) = (of(&single), of(&thrice));
             println!("{statistic:?}: {one:?} {three:?}");
@@ -242,18 +227,14 @@ mod tests {
         for trial in 0..3000 {
             let (configurations, rows) = (1 + trial % 90, 1 + trial % 3);
             let noise = (trial % 5) as f64 * 0.2;
-            let row = |random: &mut ChaCha8Rng| {
-                error_with_noise(error(trial % 3, random), noise * uniform_number(random))
-            };
+            let row =
+                |random: &mut ChaCha8Rng| error_with_noise(error(trial % 3, random), noise * uniform_number(random));
             let all = (0..configurations).map(|_| (0..rows).map(|_| row(&mut random)).collect()).collect();
             let errors = ConfigurationErrors { configurations: all, components: 3 };
             let seen = errors.configurations.iter().flatten().map(|row| row.error).fold(0.0, f64::max);
             for statistic in [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max] {
                 let BoundedStatistic { found, from, to } = errors.bound_statistic(statistic).unwrap();
-                assert!(
-                    from <= found && to.is_none_or(|to| to >= found),
-                    "{statistic:?}: {from} {found} {to:?}"
-                );
+                assert!(from <= found && to.is_none_or(|to| to >= found), "{statistic:?}: {from} {found} {to:?}");
                 judged += 1;
             }
             assert!(errors.bound_statistic(AcceptedStatistic::Max).unwrap().to.unwrap() >= seen);
@@ -282,8 +263,7 @@ mod tests {
         let guard = 7.8147f64.sqrt();
         let failed = (0..400)
             .filter(|_| {
-                let rows =
-                    (0..500).map(|_| vec![error_with_noise(length(&mut random, [1.0; 3]), guard)]).collect();
+                let rows = (0..500).map(|_| vec![error_with_noise(length(&mut random, [1.0; 3]), guard)]).collect();
                 ConfigurationErrors { configurations: rows, components: 3 }
                     .bound_statistic(AcceptedStatistic::Max)
                     .unwrap()
@@ -312,11 +292,9 @@ mod tests {
         );
         assert!(failed <= 35, "{failed}");
         // Too few rows have no upper bound: 58 for the 95 % statistic, one for the RMS.
-        let few =
-            ConfigurationErrors { configurations: vec![vec![error_with_noise(1.0, 0.0)]; 58], components: 1 };
+        let few = ConfigurationErrors { configurations: vec![vec![error_with_noise(1.0, 0.0)]; 58], components: 1 };
         assert_eq!(few.bound_statistic(AcceptedStatistic::P95).unwrap().to, None);
-        let one =
-            ConfigurationErrors { configurations: vec![vec![error_with_noise(1.0, 0.0)]], components: 1 };
+        let one = ConfigurationErrors { configurations: vec![vec![error_with_noise(1.0, 0.0)]], components: 1 };
         assert_eq!(one.bound_statistic(AcceptedStatistic::Rms).unwrap().to, None);
     }
 }

@@ -21,8 +21,7 @@ pub enum AcceptedStatistic {
 
 impl AcceptedStatistic {
     /// All statistics, in the order of tables.
-    pub const ALL: [AcceptedStatistic; 3] =
-        [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max];
+    pub const ALL: [AcceptedStatistic; 3] = [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max];
 
     /// The word used in files and for limits.
     #[must_use]
@@ -98,13 +97,11 @@ impl AcceptanceLimits {
                 .refuse("found no limit to accept, expected at least one, like 0.2mm or max:0.5mm");
         }
         for (k, limit) in limits.iter().enumerate() {
-            let same =
-                |other: &&AcceptanceLimit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
+            let same = |other: &&AcceptanceLimit| (other.statistic, other.unit) == (limit.statistic, limit.unit);
             if let Some(other) = limits[..k].iter().find(same) {
                 let [other, own] = [other, limit].map(|it| it.words());
-                return ErrorKind::Option.refuse(format!(
-                    "found two limits of one kind, {other} and {own}, expected one of them"
-                ));
+                return ErrorKind::Option
+                    .refuse(format!("found two limits of one kind, {other} and {own}, expected one of them"));
             }
         }
         Ok(AcceptanceLimits { limits, model })

@@ -12,9 +12,7 @@ use serde::{Deserialize, Serialize};
 use poecal_model::measurement::Quantity;
 
 /// Decision on a limit by measurements.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Decision {
     /// The limit is kept: so is the upper bound.
@@ -138,8 +136,7 @@ impl AcceptedLimit {
         counts: [usize; 2],
     ) -> Self {
         let unit = quantity.unit();
-        let [limit_shown, value, from] =
-            [limit.most, found.found, found.from].map(|it| unit.in_shown_unit(it));
+        let [limit_shown, value, from] = [limit.most, found.found, found.from].map(|it| unit.in_shown_unit(it));
         let to = found.to.map(|it| unit.in_shown_unit(it));
         AcceptedLimit {
             quantity: quantity.name().to_owned(),

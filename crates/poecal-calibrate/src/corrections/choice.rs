@@ -130,8 +130,7 @@ pub(crate) fn choose(linear: &LinearRows, parts: &[FoldFit], configurations: usi
     let is_harmed = common.left_out > geometry.left_out + 3.0 * few;
     // The logarithms are those of squares.
     let gains_nothing = 0.5 * (best.left_out - geometry.left_out) > (1.0 - GAIN).ln();
-    if best.score.is_finite() && geometry.left_out.is_finite() && (loses_little && is_harmed || gains_nothing)
-    {
+    if best.score.is_finite() && geometry.left_out.is_finite() && (loses_little && is_harmed || gains_nothing) {
         best = geometry;
     }
     let reason = if best.sizes == Sizes::NONE { SizesReason::NoBetter } else { SizesReason::Predict };

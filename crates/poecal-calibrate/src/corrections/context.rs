@@ -104,20 +104,15 @@ impl<'g> CorrectionContext<'g> {
         let start = estimate(model, calibrated, &data);
         let packed = PackedValues::from_dataset(&model.robot, &data);
         let unknowns = unknowns(model, of_geometry.unknowns, &sizes.unwrap_or(Sizes::ALL));
-        let session =
-            Session { data: &data, robot: &model.robot, packed: &packed, unknowns: &unknowns, ..of_geometry };
+        let session = Session { data: &data, robot: &model.robot, packed: &packed, unknowns: &unknowns, ..of_geometry };
         let prior = options.prior_with_terms(&session);
         let prior = Some((&prior, 1.0));
         let task = FitTask { session, rows: &rows, weights: weights.as_deref(), prior, options };
         let configurations = data.configurations(&rows).len();
         let weight = weight_of_prior(configurations);
         let classes: Vec<Class> = match sizes {
-            None => tried_sizes()
-                .map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max)))
-                .collect(),
-            Some(sizes) => {
-                TermGroup::ALL.iter().map(|group| (slice::from_ref(group), sizes[*group])).collect()
-            }
+            None => tried_sizes().map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max))).collect(),
+            Some(sizes) => TermGroup::ALL.iter().map(|group| (slice::from_ref(group), sizes[*group])).collect(),
         };
         let linear = LinearRows::new(&task, model, (&start, noise), (&rows, weight), &classes)?;
         Some(RowSample { linear, parts, configurations })

@@ -8,9 +8,7 @@ use super::effects::effects;
 use super::frames::{SessionModel, frames};
 use crate::run::CalibrationRun;
 use crate::run::accuracy::{JudgingError, ModelAccuracy};
-use crate::run::calibrated_places::{
-    CalibratedStation, CalibratedTarget, UnmeasuredTip, place_tip, stations,
-};
+use crate::run::calibrated_places::{CalibratedStation, CalibratedTarget, UnmeasuredTip, place_tip, stations};
 use crate::run::options::DeviceFrameKnowledge;
 use crate::steps::calibrated_fit::CalibratedFit;
 use crate::trust::coverage_check::{CoverageCheck, held_out_check};
@@ -95,9 +93,9 @@ impl CorrectedFit {
             nominal: (&geometry.run.robot, registered),
             seed: options.seed,
         };
-        let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
-            domain.expectations_beside(uncertainty, left_out_m)
-        });
+        let expected = uncertainty
+            .as_mut()
+            .map_or_else(Expectations::default, |uncertainty| domain.expectations_beside(uncertainty, left_out_m));
         let found = uncertainty.as_ref().filter(|_| self.has_terms()).map(|uncertainty| {
             let deviations: Vec<f64> = model.deviations(&self.possible).collect();
             let before = (&geometry.session(), &geometry.estimate);
@@ -119,8 +117,7 @@ impl CorrectedFit {
             }
         }
         let data = session.data;
-        let (robot, targets) =
-            place_tip(&model.robot, data, &data.frames(rows), &estimate, options.move_tip, tip);
+        let (robot, targets) = place_tip(&model.robot, data, &data.frames(rows), &estimate, options.move_tip, tip);
         Correction {
             robot: Robot { terms: estimate.terms.clone(), ..robot },
             targets,

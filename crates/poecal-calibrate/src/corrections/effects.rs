@@ -42,8 +42,7 @@ pub(crate) fn effects(
     let gatherer = Gatherer::new(model, session, estimate, uncertainty, deviations);
     let mut found: Vec<(JointEffect, Vec<(usize, f64)>)> = Vec::new();
     let mut errors = Vec::new();
-    let residuals =
-        [(of_geometry, calibrated), (session, estimate)].map(|(session, it)| session.errors(&rows, it));
+    let residuals = [(of_geometry, calibrated), (session, estimate)].map(|(session, it)| session.errors(&rows, it));
     let motions = joint_motions(session, estimate, &rows);
     for &joint in &model.places {
         let slides = model.robot.joints[joint].kind == JointKind::Prismatic;
@@ -78,8 +77,7 @@ fn joint_motions(session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Ve
             let slides = robot.joints[joint].kind == JointKind::Prismatic;
             for view in chain.of_joint(joint) {
                 let lever = chain.target.translation - view.origin;
-                let (shift, turn) =
-                    if slides { (view.z, Vector3::zeros()) } else { (view.z.cross(&lever), view.z) };
+                let (shift, turn) = if slides { (view.z, Vector3::zeros()) } else { (view.z.cross(&lever), view.z) };
                 let way = if view.backward { -1.0 } else { 1.0 };
                 motions[at].0 += shift * way;
                 motions[at].1 += turn * way;
@@ -110,12 +108,7 @@ fn about_their_mean(of_rows: &mut [Vec<Vec<TermAtRow>>]) {
 }
 
 /// Motion of a joint that explains most of the residuals of some rows, and its standard deviation.
-fn explain_residuals(
-    some: &[usize],
-    errors: &[RowError],
-    motions: &[JointMotion],
-    noise: Noise,
-) -> (f64, f64) {
+fn explain_residuals(some: &[usize], errors: &[RowError], motions: &[JointMotion], noise: Noise) -> (f64, f64) {
     let weigh = [Quantity::Position, Quantity::Rotation].map(|it| noise[it].powi(-2));
     let (mut along, mut information) = (0.0, 0.0);
     for &at in some {
@@ -195,10 +188,8 @@ impl<'a> Gatherer<'a> {
     ) -> Option<(JointEffect, Vec<(usize, f64)>)> {
         let value = |terms: &[TermAtRow]| terms.iter().map(|it| it.coefficient * it.basis).sum::<f64>();
         // For compliant joints the vector of both turns is evaluated; the row with the largest one represents the effect.
-        let mut of_rows: Vec<Vec<Vec<TermAtRow>>> = rows
-            .iter()
-            .map(|&row| terms.iter().map(|terms| self.terms_at_row(terms, row)).collect())
-            .collect();
+        let mut of_rows: Vec<Vec<Vec<TermAtRow>>> =
+            rows.iter().map(|&row| terms.iter().map(|terms| self.terms_at_row(terms, row)).collect()).collect();
         if group == TermGroup::Factors {
             about_their_mean(&mut of_rows);
         }

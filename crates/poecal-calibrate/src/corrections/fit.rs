@@ -74,15 +74,7 @@ impl CorrectionContext<'_> {
             let (sizes, reason) =
                 sizes.map_or((Sizes::NONE, SizesReason::Undetermined), |sizes| (sizes, SizesReason::Given));
             let estimate = self.start(model);
-            return SizeChoice {
-                sizes,
-                reason,
-                tried: Vec::new(),
-                estimate,
-                noise,
-                variance: 1.0,
-                growth: 1.0,
-            };
+            return SizeChoice { sizes, reason, tried: Vec::new(), estimate, noise, variance: 1.0, growth: 1.0 };
         };
         let mut variance = 1.0;
         let usual = sizes.unwrap_or(Sizes::COMMON);
@@ -168,8 +160,7 @@ impl CorrectionContext<'_> {
         (packed, predicted, noise): (PackedValues, FitPrediction, Noise),
     ) -> CorrectedFit {
         let SizeChoice { sizes, reason, tried, variance, growth, .. } = choice;
-        let (of_geometry, CalibrationRun { options, fit_rows, held_out_rows, .. }) =
-            (self.session, &self.geometry.run);
+        let (of_geometry, CalibrationRun { options, fit_rows, held_out_rows, .. }) = (self.session, &self.geometry.run);
         let FitPrediction { estimate, training, held_out } = predicted;
         let every = unknowns(model, of_geometry.unknowns, possible);
         let session = self.session(model, &packed, &every);
@@ -185,8 +176,7 @@ impl CorrectionContext<'_> {
             ),
             unknowns: unknowns(model, of_geometry.unknowns, &sizes),
             training: model_accuracy(of_geometry.data, fit_rows, &training),
-            held_out: (!held_out_rows.is_empty())
-                .then(|| model_accuracy(of_geometry.data, held_out_rows, &held_out)),
+            held_out: (!held_out_rows.is_empty()).then(|| model_accuracy(of_geometry.data, held_out_rows, &held_out)),
             prior_weight: weight * variance,
             model: model.clone(),
             possible: *possible,
@@ -228,12 +218,7 @@ fn numbers(task: &FitTask<'_>) -> ByQuantity<f64> {
 }
 
 /// The optimum with the noise re-estimated.
-fn refit_with_noise(
-    task: &FitTask<'_>,
-    start: Estimate,
-    noise: Noise,
-    of: &CalibratedFit<'_>,
-) -> (Estimate, Noise) {
+fn refit_with_noise(task: &FitTask<'_>, start: Estimate, noise: Noise, of: &CalibratedFit<'_>) -> (Estimate, Noise) {
     let (mut estimate, mut noise) = (start, noise);
     let counts = numbers(task);
     let all: f64 = counts.iter().map(|(_, count)| *count).sum();

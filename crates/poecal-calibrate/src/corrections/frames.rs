@@ -26,12 +26,9 @@ impl SessionModel<'_> {
     /// Body and position (base frame, zero joint values) of everything measured or measuring that the robot moves.
     fn moving_bodies(&self) -> Vec<(Body, Vector3<f64>)> {
         let Estimate { tree, base_from_target, .. } = self.estimate;
-        let targets =
-            tree.targets().iter().zip(base_from_target).map(|(body, pose)| (*body, pose.translation));
+        let targets = tree.targets().iter().zip(base_from_target).map(|(body, pose)| (*body, pose.translation));
         let instruments = tree.instruments().iter().enumerate().filter_map(|(station, stand)| match stand {
-            InstrumentMount::On(body) => {
-                Some((*body, self.estimate.device_at_zero(station).inverse().translation))
-            }
+            InstrumentMount::On(body) => Some((*body, self.estimate.device_at_zero(station).inverse().translation)),
             InstrumentMount::Target(_) => None,
         });
         targets.chain(instruments).filter(|(body, _)| body.joint().is_some()).collect()
@@ -46,11 +43,7 @@ impl SessionModel<'_> {
 
 /// Motion of the base that brings a model's predictions in the base frame nearest to the calibrated model's, by least squares over all measured
 /// points and the tip; none if the base is known. Also returns the model's `base_from_tip` at zero, with that base and the best tool.
-pub(crate) fn frames(
-    [model, calibrated]: [SessionModel<'_>; 2],
-    rows: &[u32],
-    move_tip: bool,
-) -> (Pose, Pose) {
+pub(crate) fn frames([model, calibrated]: [SessionModel<'_>; 2], rows: &[u32], move_tip: bool) -> (Pose, Pose) {
     let data = calibrated.session.data;
     let frames = data.frames(rows);
     let both = [model, calibrated].map(|it| (it.robot(&frames, move_tip), it.moving_bodies()));

@@ -145,8 +145,7 @@ impl LinearRows {
     /// does not explain.
     pub(crate) fn weigh_priors(&mut self, sizes: &Sizes) -> f64 {
         let found = self.noise_factors(sizes, false);
-        let squares: f64 =
-            found.iter().map(|(quantity, factor)| self.count(*quantity) * factor * factor).sum();
+        let squares: f64 = found.iter().map(|(quantity, factor)| self.count(*quantity) * factor * factor).sum();
         let variance = (squares / self.quantities.len().max(1) as f64).max(1.0);
         self.weight *= variance;
         variance

@@ -70,9 +70,7 @@ impl ModeColumns {
                     devices.extend(known.len()..known.len() + places.len());
                     known.extend(places.iter().map(at));
                 }
-                ParameterSubject::Joint(_) | ParameterSubject::Target(_) => {
-                    known.extend(places.iter().map(at))
-                }
+                ParameterSubject::Joint(_) | ParameterSubject::Target(_) => known.extend(places.iter().map(at)),
             }
         }
         ModeColumns { known, devices, held, terms }
@@ -100,11 +98,9 @@ pub(crate) fn modes(
     let (mut modes, mut turns): (Vec<TermMode>, Vec<DVector<f64>>) = (Vec::new(), Vec::new());
     for (class, (groups, largest)) in classes.iter().enumerate() {
         let Some(&group) = groups.first() else { continue };
-        let own: Vec<usize> =
-            (0..columns.terms.len()).filter(|&at| columns.terms[at].class == class).collect();
+        let own: Vec<usize> = (0..columns.terms.len()).filter(|&at| columns.terms[at].class == class).collect();
         let n = own.len();
-        let (values, vectors) =
-            linalg::symmetric_eigen(whole.select_rows(&own).select_columns(&own).as_slice(), n);
+        let (values, vectors) = linalg::symmetric_eigen(whole.select_rows(&own).select_columns(&own).as_slice(), n);
         for (at, information) in values.into_iter().enumerate().rev() {
             if information * largest * largest < NEGLIGIBLE * weight {
                 break;
@@ -115,7 +111,6 @@ pub(crate) fn modes(
             turns.push(turn);
         }
     }
-    let turn =
-        if turns.is_empty() { DMatrix::zeros(columns.terms.len(), 0) } else { DMatrix::from_columns(&turns) };
+    let turn = if turns.is_empty() { DMatrix::zeros(columns.terms.len(), 0) } else { DMatrix::from_columns(&turns) };
     Some((modes, turn))
 }

@@ -63,11 +63,7 @@ pub(crate) fn uncertainty(
 
 /// Representative rows of every target seen from every station, and weights of all rows with which their information equals that of all; `None` for
 /// few rows.
-fn choose_representatives(
-    data: &Dataset,
-    rows: &[u32],
-    weights: Option<&[f64]>,
-) -> Option<(Vec<u32>, Vec<f64>)> {
+fn choose_representatives(data: &Dataset, rows: &[u32], weights: Option<&[f64]>) -> Option<(Vec<u32>, Vec<f64>)> {
     if rows.len() <= SUMMED {
         return None;
     }

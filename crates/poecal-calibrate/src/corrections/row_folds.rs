@@ -32,11 +32,7 @@ pub(crate) struct FoldFit {
 
 impl LinearRows {
     /// The parts that are left out in turn.
-    pub(crate) fn parts(
-        &self,
-        parts: &[Vec<u32>],
-        (gram, gradient): &(DMatrix<f64>, DVector<f64>),
-    ) -> Vec<FoldFit> {
+    pub(crate) fn parts(&self, parts: &[Vec<u32>], (gram, gradient): &(DMatrix<f64>, DVector<f64>)) -> Vec<FoldFit> {
         let (mut gram, mut gradient) = (gram.clone(), gradient.clone());
         self.add_prior(&mut gram, &mut gradient);
         let each = threads::map_parts(parts.len(), |at| self.part(parts.get(at)?, &gram, &gradient));
@@ -77,8 +73,7 @@ impl LinearRows {
         } else {
             let factor = cholesky(&square(&frames), 1e-9)?;
             let moved = solve_factored(&factor, &(frames.transpose() * &columns));
-            let of_still =
-                DVector::from_vec(linalg::cholesky_solve(&factor, frames.tr_mul(&left).as_slice()));
+            let of_still = DVector::from_vec(linalg::cholesky_solve(&factor, frames.tr_mul(&left).as_slice()));
             SquaredErrors::new(columns - &frames * moved, left - &frames * of_still)
         };
         Some(FoldFit { information, pull, fitted, places, follow, still, covariance })
@@ -113,12 +108,7 @@ impl LinearRows {
     }
 
     /// Mean predicted variance of some numbers of a part by the fit without it, by its information alone.
-    fn predicted_without(
-        &self,
-        part: &FoldFit,
-        used: &[(usize, f64)],
-        counts: impl Fn(&usize) -> bool,
-    ) -> Option<f64> {
+    fn predicted_without(&self, part: &FoldFit, used: &[(usize, f64)], counts: impl Fn(&usize) -> bool) -> Option<f64> {
         let k = self.known.len();
         let places: Vec<usize> = part.places.iter().copied().filter(counts).collect();
         let own = self.jacobian.select_rows(&places);
@@ -184,8 +174,7 @@ impl LinearRows {
 
 /// Mean over parts of the logarithm of a square; infinite if one has none, since a system that is not positive definite is not eligible.
 fn mean_logarithm(parts: &[FoldFit], square: impl Fn(&FoldFit) -> Option<f64> + Sync) -> f64 {
-    let logs =
-        threads::map_parts(parts.len(), |at| Some(square(parts.get(at)?)?.max(f64::MIN_POSITIVE).ln()));
+    let logs = threads::map_parts(parts.len(), |at| Some(square(parts.get(at)?)?.max(f64::MIN_POSITIVE).ln()));
     let count = logs.len() as f64;
     logs.into_iter().sum::<Option<f64>>().map_or(f64::INFINITY, |sum| sum / count)
 }

@@ -32,8 +32,7 @@ impl CorrectedFit {
         let configurations = RepeatedConfigurations::new(session.data, rows);
         let judged = judge_rows(&task, &configurations, judging, &all, geometry.robust.robustness.loss);
         let suspected: Vec<bool> = judged.rows.iter().map(|row| row.suspected).collect();
-        let differs =
-            geometry.robust.robustness.rows.iter().zip(&suspected).any(|(row, it)| row.suspected != *it);
+        let differs = geometry.robust.robustness.rows.iter().zip(&suspected).any(|(row, it)| row.suspected != *it);
         differs.then_some(suspected)
     }
 }

@@ -33,8 +33,7 @@ pub(crate) struct ResidualDiagnostics {
 impl ResidualDiagnostics {
     /// Mistakes with which the result must not be used, a sentence each.
     pub(crate) fn mistakes(&self, targets: &[CalibratedTarget], reach_m: f64) -> Vec<String> {
-        let grave =
-            self.diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
+        let grave = self.diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
         let grave = grave.map(|it| it.statement.clone()).chain(self.input.iter().cloned());
         let moved = self.moved.iter().filter(|it| it.is_grave).map(|it| it.statement.clone());
         grave.chain(moved).chain(far_targets(targets, reach_m)).collect()
@@ -50,12 +49,7 @@ impl ResidualDiagnostics {
 
 impl CalibratedFit<'_> {
     /// Looks for signs of mistakes and changes; for steps and drifts only if `finds_moves`.
-    pub(crate) fn signs(
-        &self,
-        summary: &FitSummary,
-        figures: &Figures,
-        finds_moves: bool,
-    ) -> ResidualDiagnostics {
+    pub(crate) fn signs(&self, summary: &FitSummary, figures: &Figures, finds_moves: bool) -> ResidualDiagnostics {
         let Figures { accuracy, robustness, .. } = figures;
         let apart = self.frames_apart(accuracy);
         let mut diagnosis = match &apart {
@@ -69,12 +63,7 @@ impl CalibratedFit<'_> {
         let of_steps = || finds_moves.then(|| self.find_move()).flatten();
         let moved = apart.as_ref().map(SeparateFrames::to_move).or_else(of_steps);
         let input = self.input_doubts(accuracy, robustness, moved.as_ref());
-        ResidualDiagnostics {
-            diagnosis,
-            moved,
-            input,
-            noise: noise_doubts(&summary.remainder, figures.lag_one()),
-        }
+        ResidualDiagnostics { diagnosis, moved, input, noise: noise_doubts(&summary.remainder, figures.lag_one()) }
     }
 
     /// A mistake in the input of a session whose rows share one device frame.
@@ -107,12 +96,7 @@ impl CalibratedFit<'_> {
     }
 
     /// Doubts about the input, by the rows that are not suspected.
-    fn input_doubts(
-        &self,
-        accuracy: &Accuracy,
-        robustness: &Robustness,
-        moved: Option<&DetectedMove>,
-    ) -> Vec<String> {
+    fn input_doubts(&self, accuracy: &Accuracy, robustness: &Robustness, moved: Option<&DetectedMove>) -> Vec<String> {
         // Different device frames make any model misfit.
         if moved.is_some_and(DetectedMove::is_of_frames) {
             return Vec::new();
@@ -133,8 +117,7 @@ impl CalibratedFit<'_> {
     }
 
     fn frame_search(&self, left_m: f64) -> FrameSearch<'_> {
-        let (session, noise, CalibrationRun { fit_rows, options, .. }) =
-            (self.session(), self.noise(), &self.run);
+        let (session, noise, CalibrationRun { fit_rows, options, .. }) = (self.session(), self.noise(), &self.run);
         FrameSearch { session, rows: fit_rows, noise, options, left_m }
     }
 

@@ -103,13 +103,11 @@ impl AxisDeviations {
             if follows(owners[row], of) { rows[row].dot(&screws[of].twist().to_vector()) * unit } else { 0.0 }
         });
         let columns = if session.base_free() { 6 } else { 0 };
-        let by_base =
-            DMatrix::from_fn(size, columns, |row, k| rows[row][k] * if k < 3 { 1.0 } else { 1.0 / length_m });
+        let by_base = DMatrix::from_fn(size, columns, |row, k| rows[row][k] * if k < 3 { 1.0 } else { 1.0 / length_m });
         let motions = screw_motions(estimate, &uncertainty.layout);
         let n = uncertainty.layout.dim();
         let by_steps = DMatrix::from_fn(size, n, |row, k| rows[row].dot(&motions[k][owners[row]]));
-        let covariance =
-            &by_steps * DMatrix::from_row_slice(n, n, &uncertainty.covariance) * by_steps.transpose();
+        let covariance = &by_steps * DMatrix::from_row_slice(n, n, &uncertainty.covariance) * by_steps.transpose();
         let mut is_shift = vec![false; size];
         shifts.iter().for_each(|&(at, _)| is_shift[at..at + 2].fill(true));
         AxisDeviations {
@@ -137,9 +135,7 @@ impl AxisDeviations {
         let (values, vectors) = eigen(&base);
         let largest = values.last().copied().unwrap_or(0.0);
         let mut weights = inverse;
-        for (value, vector) in
-            values.iter().zip(vectors.column_iter()).filter(|(value, _)| **value > NULL * largest)
-        {
+        for (value, vector) in values.iter().zip(vectors.column_iter()).filter(|(value, _)| **value > NULL * largest) {
             let along = &moved * vector;
             weights -= &along * along.transpose() / *value;
             density += value.ln();
@@ -154,10 +150,8 @@ impl AxisDeviations {
         let unit = |at: usize| DVector::from_fn(size, |row, _| if row == at { 1.0 } else { 0.0 });
         let zeros = (0..self.by_zero.ncols())
             .map(|joint| (joint, JointPart::Zero, vec![self.by_zero.column(joint).into_owned()]));
-        let tilts =
-            self.tilts.iter().map(|&(at, joint)| (joint, JointPart::Tilt, vec![unit(at), unit(at + 1)]));
-        let shifts =
-            self.shifts.iter().map(|&(at, joint)| (joint, JointPart::Shift, vec![unit(at), unit(at + 1)]));
+        let tilts = self.tilts.iter().map(|&(at, joint)| (joint, JointPart::Tilt, vec![unit(at), unit(at + 1)]));
+        let shifts = self.shifts.iter().map(|&(at, joint)| (joint, JointPart::Shift, vec![unit(at), unit(at + 1)]));
         zeros.chain(tilts).chain(shifts).collect()
     }
 }
@@ -192,8 +186,7 @@ pub(crate) fn blame(view: &FitView<'_>, uncertainty: &Uncertainty) -> Vec<FaultE
     let mut without = f64::INFINITY;
     let mut best: Vec<Option<FaultExplanation>> = vec![None; parts.len()];
     let ratios = if axes.deviations.len() > MANY { &SHIFTS[..1] } else { &SHIFTS[..] };
-    let tried =
-        (0..TRIED).flat_map(|step| ratios.iter().map(move |shifts| (RATIO.powi(-(step as i32)), *shifts)));
+    let tried = (0..TRIED).flat_map(|step| ratios.iter().map(move |shifts| (RATIO.powi(-(step as i32)), *shifts)));
     for (share, shifts) in tried {
         let usual_m = largest_m * share;
         let Some((weights, density)) = axes.weights(usual_m, shifts) else { continue };
@@ -214,27 +207,21 @@ pub(crate) fn blame(view: &FitView<'_>, uncertainty: &Uncertainty) -> Vec<FaultE
             let matrix = Matrix2::identity() + Matrix2::from_fn(entry);
             let pull = Vector2::from_fn(|k, _| columns.get(k).map_or(0.0, |it| off_m * it.dot(&weighed)));
             let determinant = matrix.m11 * matrix.m22 - matrix.m12 * matrix.m21;
-            let found = Vector2::new(
-                matrix.m22 * pull.x - matrix.m12 * pull.y,
-                matrix.m11 * pull.y - matrix.m21 * pull.x,
-            ) / determinant;
+            let found =
+                Vector2::new(matrix.m22 * pull.x - matrix.m12 * pull.y, matrix.m11 * pull.y - matrix.m21 * pull.x)
+                    / determinant;
             let with = density + determinant.ln() - pull.dot(&found);
             if best.is_none_or(|best| with < -best.evidence) {
                 let size_m = off_m * found.norm();
-                let is_angle =
-                    *part != JointPart::Shift && !(*part == JointPart::Zero && slides(view, *joint));
+                let is_angle = *part != JointPart::Shift && !(*part == JointPart::Zero && slides(view, *joint));
                 let size = if is_angle { size_m / length_m } else { size_m };
                 let usual_rad = usual_m / length_m;
-                *best =
-                    Some(FaultExplanation { joint: *joint, part: *part, evidence: -with, size, usual_rad });
+                *best = Some(FaultExplanation { joint: *joint, part: *part, evidence: -with, size, usual_rad });
             }
         }
     }
-    let mut found: Vec<FaultExplanation> = best
-        .into_iter()
-        .flatten()
-        .map(|it| FaultExplanation { evidence: it.evidence + without, ..it })
-        .collect();
+    let mut found: Vec<FaultExplanation> =
+        best.into_iter().flatten().map(|it| FaultExplanation { evidence: it.evidence + without, ..it }).collect();
     found.retain(|it| it.evidence.is_finite());
     found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     found

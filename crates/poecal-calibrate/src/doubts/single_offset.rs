@@ -41,9 +41,8 @@ pub(crate) fn one_zero(fit: &CalibratedFit<'_>) -> Option<String> {
     let held_out = sample_rows(&run.held_out_rows, MOST);
     let registration = run.registration(session, &rows, fit.noise(), true);
     let free = free_parameters(&registration, &rows);
-    let squares = |estimate: &Estimate| {
-        Problem::new(session, held_out.clone(), free.clone(), fit.noise()).normal(estimate).cost
-    };
+    let squares =
+        |estimate: &Estimate| Problem::new(session, held_out.clone(), free.clone(), fit.noise()).normal(estimate).cost;
     let registered = squares(&fit.start.registered);
     let whole = squares(&fit.estimate) / registered;
     let of_joint = |joint: usize| zero(fit, (&session, &rows, &free), joint, &squares);

@@ -57,18 +57,16 @@ pub(crate) fn suspicions(
     let robot = view.session.robot;
     let mut words: Vec<Vec<String>> = vec![Vec::new(); joints.len()];
     let found = uncertainty.map(|it| faulty_parts(&blame(view, it), joints)).unwrap_or_default();
-    let told = |it: &FaultExplanation| {
-        Some((it.joint, robot.joints.get(it.joint)?, part_words(it, joints.get(it.joint)?)))
-    };
+    let told =
+        |it: &FaultExplanation| Some((it.joint, robot.joints.get(it.joint)?, part_words(it, joints.get(it.joint)?)));
     match found.iter().filter_map(told).collect::<Vec<_>>().as_slice() {
         [] => {}
         [(joint, _, own)] => words[*joint].push(own.clone()),
         several => {
             for (joint, _, own) in several {
                 let others = several.iter().filter(|it| it.0 != *joint);
-                let others: Vec<String> = others
-                    .map(|(_, other, words)| format!("{}: {words}", shorten_name(&other.name)))
-                    .collect();
+                let others: Vec<String> =
+                    others.map(|(_, other, words)| format!("{}: {words}", shorten_name(&other.name))).collect();
                 words[*joint].push(format!(
                     "{own}, or else {}; the measurements do not distinguish them",
                     others.join(", or else ")

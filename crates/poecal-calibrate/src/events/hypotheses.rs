@@ -82,11 +82,7 @@ pub(crate) fn hypotheses(
         .collect();
     for &(target, at) in &targets {
         let unknowns = free[at].model().columns().len();
-        all.push(EventHypothesis {
-            moved: MovedPart::Target(target),
-            parts: vec![(at, FollowRule::Own)],
-            unknowns,
-        });
+        all.push(EventHypothesis { moved: MovedPart::Target(target), parts: vec![(at, FollowRule::Own)], unknowns });
     }
     if targets.len() > 1 {
         let poses = &found.estimate.base_from_target;
@@ -105,11 +101,7 @@ pub(crate) fn hypotheses(
         let term = ValueTerm { joint: at, kind, term: Term::OFFSET };
         let known = free.iter().position(|it| it.value_term().is_some_and(|own| *own == term));
         let at = known.unwrap_or_else(|| place(free, Parameter::ValueTerm(term)));
-        all.push(EventHypothesis {
-            moved: MovedPart::Zero(joint),
-            parts: vec![(at, FollowRule::Own)],
-            unknowns: 1,
-        });
+        all.push(EventHypothesis { moved: MovedPart::Zero(joint), parts: vec![(at, FollowRule::Own)], unknowns: 1 });
     }
     all
 }
@@ -138,8 +130,7 @@ impl EventHypothesis {
                     for (k, is_turn) in turns.iter_mut().enumerate() {
                         let axis = Vector3::ith(k % 3, 1.0);
                         *is_turn = k >= 3;
-                        let (shift, angle) =
-                            if k < 3 { (axis, Vector3::zeros()) } else { (axis.cross(arm), axis) };
+                        let (shift, angle) = if k < 3 { (axis, Vector3::zeros()) } else { (axis.cross(arm), axis) };
                         let (shift, angle) = (turn.transpose() * shift, turn.transpose() * angle);
                         for (&motion, (place, scale)) in motions.iter().zip(own) {
                             let step = if motion < 3 { shift[motion] } else { angle[motion - 3] };

@@ -120,10 +120,7 @@ mod tests {
     #[test]
     fn what_is_typed_stands_in_the_place_of_the_usual_one() {
         let limits: RepairLimits = "device=100mm, zero=10deg".parse().unwrap();
-        assert_eq!(
-            limits,
-            RepairLimits { device_m: 0.1, zero_rad: 10_f64.to_radians(), ..RepairLimits::default() }
-        );
+        assert_eq!(limits, RepairLimits { device_m: 0.1, zero_rad: 10_f64.to_radians(), ..RepairLimits::default() });
         for wrong in ["device", "device=", "device=100", "device=5deg", "zero=3mm", "nest=1mm", "tool=-1mm"] {
             let error = wrong.parse::<RepairLimits>().unwrap_err().to_string();
             println!("{error}");

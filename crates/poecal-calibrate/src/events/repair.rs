@@ -44,8 +44,7 @@ pub(crate) fn repair(best: &mut FittedSession<'_>) -> Events {
         let before = error_of(best);
         let run = &best.fit.run;
         let said = event(&happened, &run.data, &run.robot);
-        let exceeded =
-            said.exceeded_limit(&run.options.repair_limits, &run.data, best.fit.session().length_m);
+        let exceeded = said.exceeded_limit(&run.options.repair_limits, &run.data, best.fit.session().length_m);
         let is_open = exceeded.is_none() && run.options.repair == Repairs::Auto;
         let said = exceeded.iter().fold(said, |said, limit| said.with_limit(limit));
         let Some(repaired) = is_open.then(|| undo_events(run, &happened)).flatten() else {
@@ -65,9 +64,7 @@ pub(crate) fn repair(best: &mut FittedSession<'_>) -> Events {
         let left_out = &other.fit.run.left_out;
         let is_better = match happened {
             // Wrong rows have errors of their own in any case: their effect on the other rows decides.
-            SearchOutcome::Wrong(_) => {
-                kept_error(&other, left_out) <= OTHERS_BETTER * kept_error(best, left_out)
-            }
+            SearchOutcome::Wrong(_) => kept_error(&other, left_out) <= OTHERS_BETTER * kept_error(best, left_out),
             SearchOutcome::Step(_) => {
                 let [before, after] = compare_errors(best, &other);
                 after <= BETTER * before
@@ -117,8 +114,7 @@ fn next(found: &FittedSession<'_>) -> (Option<SearchOutcome>, Option<String>) {
     // Rows that are suspected already and have no part in the fit need no further fit.
     let is_done = wrong.iter().all(|row| fit.robust.robustness.suspects_row(*row))
         && (!wrong.iter().any(is_fitted)
-            || fit.robust.robustness.loss.is_some()
-                && fit.robust.robustness.suspects().count() == wrong.len());
+            || fit.robust.robustness.loss.is_some() && fit.robust.robustness.suspects().count() == wrong.len());
     if !wrong.is_empty() && !is_done && run.options.robust == RobustLoss::Auto {
         return (Some(SearchOutcome::Wrong(wrong)), early);
     }

@@ -81,10 +81,7 @@ impl SessionRows {
         let weight = weight_of_prior(runs.len()) * found.prior_weight.max(1.0);
         let gram = |i: usize, j: usize| weight * believed.gram[i.min(j) * n + i.max(j)];
         let gram = DMatrix::from_fn(of_fit.len(), of_fit.len(), |i, j| gram(of_fit[i], of_fit[j]));
-        let pull = DVector::from_iterator(
-            of_fit.len(),
-            of_fit.iter().map(|&place| weight * believed.gradient[place]),
-        );
+        let pull = DVector::from_iterator(of_fit.len(), of_fit.iter().map(|&place| weight * believed.gradient[place]));
         let columns = all.into_iter().map(|it| it.columns(&jacobian, &places, &rows, &session));
         let columns = columns.collect();
         let fitted = jacobian.select_columns(&of_fit);
@@ -114,8 +111,7 @@ impl SessionRows {
         let numbers: f64 = each.sum();
         let determined: f64 =
             whitened.row_iter().zip(each.iter()).map(|(row, weight)| weight * row.norm_squared()).sum();
-        let squares: f64 =
-            residual.iter().zip(each.iter()).map(|(value, weight)| weight * value * value).sum();
+        let squares: f64 = residual.iter().zip(each.iter()).map(|(value, weight)| weight * value * value).sum();
         let freedom = numbers - determined;
         let variance = squares / freedom.max(LEAST_FREEDOM * numbers).max(1.0);
         (variance > 0.0).then_some(Optimum { residual, whitened, variance, freedom })

@@ -78,10 +78,8 @@ pub(crate) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]
     };
     let wrong = if step.is_some() { isolated_rows(&is_wrong) } else { is_wrong };
     let wrong = of_rows(&wrong);
-    let early = step
-        .is_none()
-        .then(|| describe_early_readings(&rows, &optimum, &single, data, &fit.run.robot))
-        .flatten();
+    let early =
+        step.is_none().then(|| describe_early_readings(&rows, &optimum, &single, data, &fit.run.robot)).flatten();
     Some(SearchFindings { wrong, step, early })
 }
 
@@ -99,21 +97,11 @@ fn isolated_rows(wrong: &[bool]) -> Vec<bool> {
 }
 
 /// The best step of all hypotheses, if it is evident.
-fn best_evident_step(
-    rows: &SessionRows,
-    optimum: &Optimum,
-    weights: &[f64],
-    data: &Dataset,
-) -> Option<SearchStep> {
+fn best_evident_step(rows: &SessionRows, optimum: &Optimum, weights: &[f64], data: &Dataset) -> Option<SearchStep> {
     let time: Vec<usize> = (0..rows.runs.len()).collect();
-    let along =
-        |order: &[usize], columns: &HypothesisColumns| strongest_step(rows, optimum, weights, columns, order);
-    let all: Vec<(usize, SearchStep)> = rows
-        .columns
-        .iter()
-        .enumerate()
-        .filter_map(|(at, columns)| Some((at, along(&time, columns)?)))
-        .collect();
+    let along = |order: &[usize], columns: &HypothesisColumns| strongest_step(rows, optimum, weights, columns, order);
+    let all: Vec<(usize, SearchStep)> =
+        rows.columns.iter().enumerate().filter_map(|(at, columns)| Some((at, along(&time, columns)?))).collect();
     let (best, step) = all.iter().max_by(|a, b| a.1.score.total_cmp(&b.1.score))?;
     if step.gain < EVIDENT {
         return None;
@@ -135,12 +123,7 @@ fn best_evident_step(
 }
 
 /// The runs that see a hypothesis, in an order, with their shares of its step; for a drift the position in time, from -1/2 to 1/2.
-fn shares(
-    rows: &SessionRows,
-    weights: &[f64],
-    columns: &HypothesisColumns,
-    order: &[usize],
-) -> Vec<(usize, f64)> {
+fn shares(rows: &SessionRows, weights: &[f64], columns: &HypothesisColumns, order: &[usize]) -> Vec<(usize, f64)> {
     let sees = |at: usize| weights[at] > 0.0 && rows.runs[at].clone().any(|row| columns.sees[row]);
     let seen: Vec<usize> = order.iter().copied().filter(|&at| sees(at)).collect();
     let is_drift = matches!(columns.moved, MovedPart::Drift(_));

@@ -49,19 +49,11 @@ impl EventSentences {
 
     /// Adds the statement that the event is too large for a repair.
     pub(crate) fn with_limit(self, limit: &str) -> Self {
-        EventSentences(
-            self.0,
-            format!("{}; it is {limit}: look for a mistake in the input, or raise it", self.1),
-        )
+        EventSentences(self.0, format!("{}; it is {limit}: look for a mistake in the input, or raise it", self.1))
     }
 
     /// The exceeded limit in words; `radian_m` metres count for a radian. `None` for a device that had another position for another file.
-    pub(crate) fn exceeded_limit(
-        &self,
-        limits: &RepairLimits,
-        data: &Dataset,
-        radian_m: f64,
-    ) -> Option<String> {
+    pub(crate) fn exceeded_limit(&self, limits: &RepairLimits, data: &Dataset, radian_m: f64) -> Option<String> {
         let Event { kind, size_mm, size_deg, from_row, .. } = &self.0;
         let first = u32::try_from(*from_row).ok()?.checked_sub(1)?;
         if *kind == EventKind::Device && files_apart(data, first).is_some() {
@@ -91,8 +83,7 @@ pub(crate) fn event(happened: &SearchOutcome, data: &Dataset, robot: &Robot) -> 
     };
     let size_mm = has(false).then(|| 1e3 * length(false));
     let size_deg = has(true).then(|| length(true).to_degrees());
-    let EventStatement { kind, name, is, taken } =
-        statement(step, &far_words(size_mm, size_deg), data, robot);
+    let EventStatement { kind, name, is, taken } = statement(step, &far_words(size_mm, size_deg), data, robot);
     let remedy = if kind == EventKind::Drift {
         "wait until it has settled, and measure again".to_owned()
     } else {
@@ -125,8 +116,8 @@ struct EventStatement {
 
 fn statement(step: &SearchStep, far: &str, data: &Dataset, robot: &Robot) -> EventStatement {
     let from = data.place(step.first);
-    let or = other_words(step, robot, data)
-        .map_or_else(String::new, |or| format!(" ({or} explains it nearly as well)"));
+    let or =
+        other_words(step, robot, data).map_or_else(String::new, |or| format!(" ({or} explains it nearly as well)"));
     let named = |names: &[Option<String>], at: usize| names.get(at).cloned().flatten().unwrap_or_default();
     let other = |name: &str, usual, names: &[Option<String>]| {
         next_of(if name.is_empty() { usual } else { name }, names.iter().flatten())
@@ -139,10 +130,7 @@ fn statement(step: &SearchStep, far: &str, data: &Dataset, robot: &Robot) -> Eve
                     "the files {before} and {after} do not share one device frame, as --device-frames per-file says: the measuring device is {far} \
                          from where it was{or}"
                 ),
-                _ => format!(
-                    "from {from} on the measuring device{} is {far} from where it was{or}",
-                    quote_name(&name)
-                ),
+                _ => format!("from {from} on the measuring device{} is {far} from where it was{or}", quote_name(&name)),
             };
             let taken = format!("taken as set up anew there, `{}`", other(&name, DEVICE, &data.stations));
             (EventKind::Device, name, is, taken)
@@ -151,19 +139,15 @@ fn statement(step: &SearchStep, far: &str, data: &Dataset, robot: &Robot) -> Eve
             let name = named(&data.targets, target);
             let bases: BTreeSet<&str> =
                 data.targets.iter().map(|it| family(it.as_deref().unwrap_or(MEASURED)).0).collect();
-            let (kind, what) = if bases.len() > 1 {
-                (EventKind::Nest, "nest of target")
-            } else {
-                (EventKind::Target, "target")
-            };
+            let (kind, what) =
+                if bases.len() > 1 { (EventKind::Nest, "nest of target") } else { (EventKind::Target, "target") };
             let own = quote_name(&name);
             let is = format!("from {from} on the {what}{own} is {far} from where it was on the arm{or}");
             let taken = format!("taken as another target, `{}`", other(&name, MEASURED, &data.targets));
             (kind, name, is, taken)
         }
         MovedPart::Tool => {
-            let is =
-                format!("from {from} on the tool with all targets is {far} from where it was on the arm{or}");
+            let is = format!("from {from} on the tool with all targets is {far} from where it was on the arm{or}");
             (EventKind::Target, String::new(), is, "taken as other targets from there on".to_owned())
         }
         MovedPart::Zero(joint) => {

@@ -24,8 +24,7 @@ pub(crate) fn describe_early_readings(
 ) -> Option<String> {
     let of_before = part(rows, optimum, weights, data, robot, true)?;
     let of_after = part(rows, optimum, weights, data, robot, false).map_or(0.0, |it| it.gain);
-    let is_evident =
-        of_before.angle_rad > 0.0 && of_before.gain >= EVIDENT && of_before.gain >= OF_BEFORE * of_after;
+    let is_evident = of_before.angle_rad > 0.0 && of_before.gain >= EVIDENT && of_before.gain >= OF_BEFORE * of_after;
     is_evident.then(|| {
         format!(
             "the residuals follow the motion from the configuration before ({:.0} standard deviations): it may be that the joints were read {:.2} deg \
@@ -74,8 +73,7 @@ fn part(
         let Some(other) = other else { continue };
         let (own, other) = (data.readings(own), data.readings(other));
         let way = |at: usize| own[at] - other[at];
-        let largest =
-            joints.iter().map(|(at, multiplier, _)| (multiplier * way(*at)).abs()).fold(0.0, f64::max);
+        let largest = joints.iter().map(|(at, multiplier, _)| (multiplier * way(*at)).abs()).fold(0.0, f64::max);
         if largest < LEAST_TURN {
             continue;
         }

@@ -28,10 +28,8 @@ pub(crate) fn without_wrong(rows: &SessionRows) -> Option<(Vec<f64>, Optimum)> {
     for round in 0..ROUNDS {
         let sizes = sizes(rows, optimum.as_ref().unwrap_or(&whole), &weights);
         let usual = median(sizes.iter().copied())?.max(f64::MIN_POSITIVE);
-        let bound =
-            |run: &Range<usize>| if rows.numbers(run).len() < FEW_NUMBERS { 2.0 * WRONG } else { WRONG };
-        let ratios: Vec<f64> =
-            sizes.iter().zip(&rows.runs).map(|(size, run)| size / usual / bound(run)).collect();
+        let bound = |run: &Range<usize>| if rows.numbers(run).len() < FEW_NUMBERS { 2.0 * WRONG } else { WRONG };
+        let ratios: Vec<f64> = sizes.iter().zip(&rows.runs).map(|(size, run)| size / usual / bound(run)).collect();
         // If no error comes near the bound, nothing is wrong.
         if round == 0 && ratios.iter().all(|ratio| *ratio < NEAR) {
             return Some((all, whole));
@@ -82,11 +80,8 @@ fn sizes(rows: &SessionRows, optimum: &Optimum, weights: &[f64]) -> Vec<f64> {
         let whitened = optimum.whitened.rows(numbers.start, n);
         let fitted = whitened * whitened.transpose();
         // Variance of a fitted run, reduced by the fit; for another run, increased by the uncertainty of the fit.
-        let expected = if *weight > 0.0 {
-            DMatrix::identity(n, n) - fitted * *weight
-        } else {
-            DMatrix::identity(n, n) + fitted
-        };
+        let expected =
+            if *weight > 0.0 { DMatrix::identity(n, n) - fitted * *weight } else { DMatrix::identity(n, n) + fitted };
         let square = linalg::solve_symmetric(expected, &own).map_or(0.0, |it| own.dot(&it));
         (square / n.max(1) as f64).sqrt()
     });

@@ -53,8 +53,7 @@ impl PoseCluster {
         let (mean, covariance) = mean_and_covariance(self.errors_m.iter().copied());
         let count = self.errors_m.len() as f64;
         let freedom = (count - 2.0).max(1.0);
-        let radius =
-            (2.0 * (count * count - 1.0) / (count * freedom) * f_quantile(0.05, 2.0, freedom)).sqrt();
+        let radius = (2.0 * (count * count - 1.0) / (count * freedom) * f_quantile(0.05, 2.0, freedom)).sqrt();
         // Cholesky's factor of the covariance in the plane.
         let first = covariance[(across, across)].max(0.0).sqrt();
         let mixed = if first > 0.0 { covariance[(up, across)] / first } else { 0.0 };

@@ -88,8 +88,7 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
     let found = register(base, &places(&commanded), base_from_device)?;
     faults::refuse_gross(base, &found.errors, base_from_device.is_none())?;
     let calibrated: Option<Vec<Pose>> = base.iter().map(PoseCell::calibrated_pose).collect();
-    let corrected =
-        calibrated.as_ref().map(|it| register(base, &places(it), base_from_device)).transpose()?;
+    let corrected = calibrated.as_ref().map(|it| register(base, &places(it), base_from_device)).transpose()?;
     let mut figures = positions(base, &found, corrected.as_ref());
     if cells.have_rotations() {
         let is_fitted = base_from_device.is_none();
@@ -104,9 +103,7 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
             });
         }
     } else if base.iter().flat_map(|it| &it.rows).any(|row| row.rotation.is_some()) {
-        warnings.push(
-            "found orientations in some rows only, expected them in all: they are not judged".to_owned(),
-        );
+        warnings.push("found orientations in some rows only, expected them in all: they are not judged".to_owned());
     }
     figures.extend(distances(base, &commanded, calibrated.as_deref()));
     figures.extend(variations(&cells));
@@ -239,18 +236,10 @@ fn distances(base: &[PoseCell<'_>], commanded: &[Pose], calibrated: Option<&[Pos
     let variance = found.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / (count - 1.0);
     let noise = base[pair.0].noise_variance(0).zip(base[pair.1].noise_variance(0)).map(|(a, b)| a + b);
     let rows = base[pair.0].rows.iter().take(found.len()).copied().collect();
-    let both = PoseCell {
-        pose: format!("{}-{}", base[pair.0].pose, base[pair.1].pose),
-        rows,
-        ..base[pair.0].clone()
-    };
-    let accuracy =
-        |poses: &[Pose]| intervals::mean(mean - apart(poses, pair), &[(variance / count, count - 1.0)]);
+    let both = PoseCell { pose: format!("{}-{}", base[pair.0].pose, base[pair.1].pose), rows, ..base[pair.0].clone() };
+    let accuracy = |poses: &[Pose]| intervals::mean(mean - apart(poses, pair), &[(variance / count, count - 1.0)]);
     let own = figure(FigureName::Ad, &both, accuracy(commanded));
-    vec![
-        TestFigure { corrected: calibrated.map(accuracy), ..own },
-        scatter(FigureName::Rd, &both, variance, noise),
-    ]
+    vec![TestFigure { corrected: calibrated.map(accuracy), ..own }, scatter(FigureName::Rd, &both, variance, noise)]
 }
 
 /// Distances between two poses in each cycle that both have; by their order if cycles have no names.
@@ -297,11 +286,7 @@ fn variations(cells: &PoseCells<'_>) -> Vec<TestFigure> {
 
 /// The largest of several figures, with the largest ends of their intervals.
 fn largest_bounds(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBounds> {
-    bounds.reduce(|a, b| FigureBounds {
-        found: a.found.max(b.found),
-        from: a.from.max(b.from),
-        to: a.to.max(b.to),
-    })
+    bounds.reduce(|a, b| FigureBounds { found: a.found.max(b.found), from: a.from.max(b.from), to: a.to.max(b.to) })
 }
 
 /// dAP and dRP: the largest change from the first series.

@@ -99,9 +99,8 @@ impl FrameFit {
         let rows: Vec<Matrix3x6<f64>> = places.iter().map(row).collect();
         let normal: Matrix6<f64> = rows.iter().map(|row| row.transpose() * row).sum();
         let Some(inverse) = linalg::inverse_6(normal) else {
-            return ErrorKind::Measurement.refuse(
-                "found poses on a line, expected others beside it: they do not determine the device frame",
-            );
+            return ErrorKind::Measurement
+                .refuse("found poses on a line, expected others beside it: they do not determine the device frame");
         };
         Ok(FrameFit { rows, inverse })
     }

@@ -16,9 +16,7 @@ pub(super) struct VariancePart {
 }
 
 /// Mean of vectors, and their covariance with `n - 1` degrees of freedom.
-pub(super) fn mean_and_covariance(
-    of: impl Iterator<Item = Vector3<f64>> + Clone,
-) -> (Vector3<f64>, Matrix3<f64>) {
+pub(super) fn mean_and_covariance(of: impl Iterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, Matrix3<f64>) {
     let count = of.clone().count().max(1) as f64;
     let mean = of.clone().sum::<Vector3<f64>>() / count;
     let squares: Matrix3<f64> = of.map(|it| (it - mean) * (it - mean).transpose()).sum();

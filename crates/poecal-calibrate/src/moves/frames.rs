@@ -182,8 +182,6 @@ impl FrameSearch<'_> {
     /// Comparison of the errors in words, if the reduction is significant.
     fn describe_improvement(&self, own_m: f64) -> Option<String> {
         let is_better = BETTER * own_m <= self.left_m;
-        is_better.then(|| {
-            format!("the residual is {:.3} mm (RMS) instead of {:.1} mm", 1e3 * own_m, 1e3 * self.left_m)
-        })
+        is_better.then(|| format!("the residual is {:.3} mm (RMS) instead of {:.1} mm", 1e3 * own_m, 1e3 * self.left_m))
     }
 }

@@ -48,9 +48,8 @@ impl DetectedMove {
             ChangeKind::Frames => true,
             ChangeKind::Drift => false,
             ChangeKind::Step(sides) => {
-                let within = |side: &Vec<u32>| {
-                    robustness.suspects().filter(|row| side.binary_search(row).is_ok()).count()
-                };
+                let within =
+                    |side: &Vec<u32>| robustness.suspects().filter(|row| side.binary_search(row).is_ok()).count();
                 let most = sides.iter().map(within).max().unwrap_or(0);
                 most as f64 >= EXPLAINED * robustness.suspects().count() as f64
             }
@@ -103,8 +102,7 @@ pub(crate) fn find_move(search: &ChangeSearch<'_>) -> Option<DetectedMove> {
 /// Errors of the rows of one station, in the device's axes.
 fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> ErrorSeries {
     let own = rows.iter().zip(errors);
-    let own =
-        own.filter(|(row, error)| search.session.observation(**row).station == station && is_position(error));
+    let own = own.filter(|(row, error)| search.session.observation(**row).station == station && is_position(error));
     let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) = own.map(|(&row, error)| (row, error.lead())).unzip();
     let configurations = rows.iter().map(|&row| shapes(search.session.packed, row as usize)).collect();
     ErrorSeries { rows, values, configurations }
@@ -157,11 +155,7 @@ impl ChangeSearch<'_> {
                 data.place(first),
                 data.place(last)
             );
-            return DetectedMove {
-                statement,
-                is_grave: change.distance_m > change.left_m,
-                kind: ChangeKind::Drift,
-            };
+            return DetectedMove { statement, is_grave: change.distance_m > change.left_m, kind: ChangeKind::Drift };
         };
         let place = data.place(rows[at]);
         let statement = match subject {

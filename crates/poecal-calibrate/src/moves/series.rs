@@ -95,11 +95,8 @@ impl ErrorSeries {
     fn without_wrong(&self) -> Option<Vec<usize>> {
         let count = self.values.len();
         let far = FAR * median(self.values.iter().map(Vector3::norm))?;
-        let near: Vec<Vector3<f64>> = self
-            .values
-            .iter()
-            .map(|value| value * (far / value.norm().max(far).max(f64::MIN_POSITIVE)))
-            .collect();
+        let near: Vec<Vector3<f64>> =
+            self.values.iter().map(|value| value * (far / value.norm().max(far).max(f64::MIN_POSITIVE))).collect();
         let step = strongest_step(&near)?;
         let (before, after) = self.values.split_at(step.at);
         let middles = [median_point(before), median_point(after)];
@@ -136,9 +133,8 @@ impl ErrorSeries {
         }
         let factor = linalg::cholesky(&gram, n, 1e-9 * values.len() as f64)?;
         let coefficients = linalg::cholesky_solve(&factor, &pull);
-        let own = |(shape, time): (&&[f64], &f64)| {
-            time - shape.iter().zip(&coefficients).map(|(a, b)| a * b).sum::<f64>()
-        };
+        let own =
+            |(shape, time): (&&[f64], &f64)| time - shape.iter().zip(&coefficients).map(|(a, b)| a * b).sum::<f64>();
         let own: Vec<f64> = shapes.iter().zip(&times).map(own).collect();
         let squares: f64 = own.iter().map(|time| time * time).sum();
         let sum: Vector3<f64> = own.iter().zip(values).map(|(&time, value)| (value - mean) * time).sum();
@@ -156,8 +152,8 @@ fn time(index: usize, count: usize) -> f64 {
 fn fit_drift(values: &[Vector3<f64>]) -> SeriesModel {
     let times = || (0..values.len()).map(|index| time(index, values.len()));
     let squares: f64 = times().map(|time| time * time).sum();
-    let change = times().zip(values).map(|(time, value)| value * time).sum::<Vector3<f64>>()
-        / squares.max(f64::MIN_POSITIVE);
+    let change =
+        times().zip(values).map(|(time, value)| value * time).sum::<Vector3<f64>>() / squares.max(f64::MIN_POSITIVE);
     SeriesModel { at: 0, change, explained: change.norm_squared() * squares }
 }
 

@@ -93,10 +93,8 @@ impl ImageGrid {
             let middle = Vector2::from(at_cell.map(|it| (it as f64 + 0.5) * self.cell_px - 0.5));
             let size = camera.lens.size_px.unwrap_or_default().map(|it| f64::from(it) - 1.0);
             let inside = middle.zip_map(&Vector2::from(size), f64::min);
-            let predicted = camera
-                .lens
-                .ray(&inside)
-                .and_then(|ray| projection.off_px((at, camera), &(ray * (distance_m / ray.z))));
+            let predicted =
+                camera.lens.ray(&inside).and_then(|ray| projection.off_px((at, camera), &(ray * (distance_m / ray.z))));
             let count = corners as f64;
             let [before_px, after_px] = squares.map(|it| (corners > 0).then(|| (it / count).sqrt()));
             let mean_px = (corners > 0).then(|| (sum / count).into());
@@ -125,15 +123,12 @@ impl ImageGrid {
             None => session.errors(&own, &figures.models.calibrated),
         };
         for (row, (before, after)) in own.iter().zip(before.iter().zip(&after)) {
-            let (Some(before), Some(after)) =
-                (seen_pixels(data, *row, before), seen_pixels(data, *row, after))
-            else {
+            let (Some(before), Some(after)) = (seen_pixels(data, *row, before), seen_pixels(data, *row, after)) else {
                 continue;
             };
             for ((pixel, was), (_, is)) in before.into_iter().zip(after) {
                 let (Some(was), Some(is)) = (was, is) else { continue };
-                let [column, line] =
-                    [pixel.x, pixel.y].map(|it| ((it + 0.5) / self.cell_px).floor().max(0.0) as usize);
+                let [column, line] = [pixel.x, pixel.y].map(|it| ((it + 0.5) / self.cell_px).floor().max(0.0) as usize);
                 let Some(sum) = sums.get_mut(line.min(rows - 1) * columns + column.min(columns - 1)) else {
                     continue;
                 };

@@ -133,11 +133,9 @@ impl CalibrationRun<'_> {
         length_m: f64,
     ) -> CommonError {
         let pictures = &self.data.pictures;
-        let counts =
-            |row: u32| self.fit_rows.binary_search(&row).is_ok() && !fit.robustness.suspects_row(row);
+        let counts = |row: u32| self.fit_rows.binary_search(&row).is_ok() && !fit.robustness.suspects_row(row);
         let seen = |about: Centre| -> Vec<(Matrix6<f64>, Matrix6<f64>)> {
-            let own =
-                pictures.all.iter().zip(found).zip(spreads).filter(|((picture, _), _)| counts(picture.row));
+            let own = pictures.all.iter().zip(found).zip(spreads).filter(|((picture, _), _)| counts(picture.row));
             own.map(|((picture, (sighting, deviation)), spread)| {
                 let sighting = SightingAbout::new((&sighting.camera_from_board, sighting.information), about);
                 let from_row = sighting.from_row(picture.of_camera);
@@ -146,9 +144,8 @@ impl CalibrationRun<'_> {
             })
             .collect()
         };
-        let likeliest = |about: Centre| {
-            CommonError { about, ..pictures.common }.estimate_likely(&seen(about), numbers, length_m)
-        };
+        let likeliest =
+            |about: Centre| CommonError { about, ..pictures.common }.estimate_likely(&seen(about), numbers, length_m);
         let (board, camera) = (likeliest(Centre::Board), likeliest(Centre::Camera));
         // The known centre is kept unless the other is better.
         let margin = if pictures.common.about == Centre::Board { 2.0 } else { -2.0 };
@@ -174,9 +171,8 @@ fn nearest_sighting(view: &SightingInput<'_>, kept: Sighting, expected: &Pose) -
     // To first order at the prediction, where the rounds end at the fit of the pixels; far from it at the nearest best pose.
     let near = || view.sighting(expected, true).filter(is_near);
     let mean = |it: &Sighting| it.cost / it.freedom.max(1.0);
-    let is_as_good = |near: &Sighting| {
-        mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0
-    };
+    let is_as_good =
+        |near: &Sighting| mean(near) <= AS_GOOD * AS_GOOD * mean(&kept).max(1.0) && near.freedom >= kept.freedom - 1.0;
     let sighting = view.sighting_near(expected).filter(is_as_good);
     sighting.or_else(|| near().filter(is_as_good)).unwrap_or(kept)
 }

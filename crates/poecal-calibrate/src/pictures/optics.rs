@@ -90,8 +90,7 @@ impl Optics {
     /// Rows of pictures among some, as functions of the robot's unknowns and of these numbers.
     fn coupling(&self, data: &Dataset, problem: &Problem<'_>, estimate: &Estimate) -> Coupling {
         let pictures = &data.pictures;
-        let rows: Vec<u32> =
-            problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
+        let rows: Vec<u32> = problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
         let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
         let errors = problem.session().errors(&rows, estimate);
         let count = self.unknowns.count();
@@ -124,13 +123,8 @@ impl Optics {
     }
 
     /// The best step of the numbers from the optimum of a fit, with their standard deviations and the resulting step of the robot's unknowns.
-    pub(crate) fn best_step(
-        &self,
-        run: &CalibrationRun<'_>,
-        information: &FitInformation<'_>,
-    ) -> Option<BestStep> {
-        let Coupling { mixed, gram, pull } =
-            self.coupling(&run.data, &information.problem, information.estimate);
+    pub(crate) fn best_step(&self, run: &CalibrationRun<'_>, information: &FitInformation<'_>) -> Option<BestStep> {
+        let Coupling { mixed, gram, pull } = self.coupling(&run.data, &information.problem, information.estimate);
         let follow = information.solve(&mixed);
         let pull = pull - follow.tr_mul(information.gradient());
         let factor = factor_of(&(gram - mixed.transpose() * &follow))?;

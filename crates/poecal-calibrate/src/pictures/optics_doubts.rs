@@ -37,9 +37,10 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     }
     let held = |it: &PictureUnknown| !fit.run.unknowns.pictures.contains(it);
     let lenses = (0..pictures.cameras.len()).map(PictureUnknown::Lens);
-    let boards = pictures.boards.iter().enumerate().map(|(at, board)| {
-        if is_flat_sheet(board) { PictureUnknown::Board(at) } else { PictureUnknown::Markers(at) }
-    });
+    let boards =
+        pictures.boards.iter().enumerate().map(|(at, board)| {
+            if is_flat_sheet(board) { PictureUnknown::Board(at) } else { PictureUnknown::Markers(at) }
+        });
     let before = remaining_error(fit, (&pictures.cameras, &pictures.boards))?;
     let weights = fit.robust.weights();
     let information = FitInformation::from_fit(&fit.run, &fit.noise_ratios, (&fit.robust, &weights))?;
@@ -69,16 +70,11 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
 /// pictures.
 fn remaining_error(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) -> Option<f64> {
     let data = &fit.run.data;
-    let others = Pictures {
-        cameras: cameras.to_vec(),
-        boards: boards.to_vec(),
-        all: Vec::new(),
-        ..data.pictures.clone()
-    };
+    let others =
+        Pictures { cameras: cameras.to_vec(), boards: boards.to_vec(), all: Vec::new(), ..data.pictures.clone() };
     let (mut squares, mut freedom) = (0.0, 0.0);
     for picture in &data.pictures.all {
-        if fit.run.held_out_rows.binary_search(&picture.row).is_err()
-            || fit.robust.robustness.suspects_row(picture.row)
+        if fit.run.held_out_rows.binary_search(&picture.row).is_err() || fit.robust.robustness.suspects_row(picture.row)
         {
             continue;
         }
@@ -134,7 +130,9 @@ fn shape_words(board: &Board, numbers: &[PictureNumber], best: &BestStep, both: 
     if is_unequal {
         let (long, short) = if unequal > 0.0 { ("x", "y") } else { ("y", "x") };
         let share = 100.0 * unequal.abs();
-        found.push(format!("its lengths along {long} are {share:.2} % larger than those along {short}, against what is stated"));
+        found.push(format!(
+            "its lengths along {long} are {share:.2} % larger than those along {short}, against what is stated"
+        ));
     }
     if is_bent {
         found.push(format!("it is bent by {bend_mm:.2} mm"));

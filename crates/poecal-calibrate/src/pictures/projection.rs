@@ -55,9 +55,7 @@ impl PixelPrediction {
         for FittedPicture { pose, by_unknowns, .. } in seen {
             let mut by_pose = Matrix2x6::zeros();
             by_pose.fixed_view_mut::<2, 3>(0, 0).copy_from(&found.by_point);
-            by_pose
-                .fixed_view_mut::<2, 3>(0, 3)
-                .copy_from(&(found.by_point * hat(&(point - pose.translation)) * -1.0));
+            by_pose.fixed_view_mut::<2, 3>(0, 3).copy_from(&(found.by_point * hat(&(point - pose.translation)) * -1.0));
             let by_robot = by_pose * by_unknowns;
             squares += (&by_robot * &self.covariance * by_robot.transpose()).trace();
             if let Some((optics, best)) = &self.numbers {
@@ -85,8 +83,7 @@ impl CalibrationRun<'_> {
             let row = pictures.all.get(*at)?.row;
             let error = self.session(ratios).errors(&[row], information.estimate).pop()?;
             let (picture, pose) = predicted_picture(&self.data, row, &error)?;
-            let by_unknowns =
-                if picture.of_camera { motion_by_inverse(&pose) * motion } else { motion.clone() };
+            let by_unknowns = if picture.of_camera { motion_by_inverse(&pose) * motion } else { motion.clone() };
             let depth_m = pose.act(&middle(&pictures.boards.get(picture.board)?.points)).z;
             Some(FittedPicture { pose, by_unknowns, depth_m })
         };

@@ -37,8 +37,7 @@ impl<'a> CameraFit<'a> {
     fn new(fit: &'a CalibratedFit<'a>, camera: usize) -> Option<Self> {
         let data = &fit.run.data;
         let pictures = &data.pictures;
-        let mut views =
-            CameraViews { poses: vec![Vec::new(); pictures.boards.len()], ..CameraViews::default() };
+        let mut views = CameraViews { poses: vec![Vec::new(); pictures.boards.len()], ..CameraViews::default() };
         let rows = fit.run.fit_rows.iter().copied().filter(|row| !fit.robust.robustness.suspects_row(*row));
         let rows: Vec<u32> = rows.filter(|row| pictures.of_row(*row).is_some()).collect();
         // Poses as the robot predicts them: a single picture hardly determines the tilt of a board seen from the front.

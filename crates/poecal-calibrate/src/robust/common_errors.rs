@@ -51,14 +51,12 @@ impl RepeatedConfigurations {
         for group in &self.groups {
             let (own, others) = rest.split_at(group.len());
             rest = others;
-            let leading = |error: &RowError| {
-                error.leading_quantity().map(|quantity| (quantity, error.vector(quantity)))
-            };
+            let leading =
+                |error: &RowError| error.leading_quantity().map(|quantity| (quantity, error.vector(quantity)));
             for (&row, error) in group.iter().zip(own) {
                 let Some((quantity, error)) = leading(error) else { continue };
                 let alike = own.iter().filter_map(leading).filter(|(other, _)| *other == quantity);
-                let (sum, count) =
-                    alike.fold((Vector3::zeros(), 0), |(sum, count), (_, it)| (sum + it, count + 1));
+                let (sum, count) = alike.fold((Vector3::zeros(), 0), |(sum, count), (_, it)| (sum + it, count + 1));
                 if count < 2 {
                     continue;
                 }

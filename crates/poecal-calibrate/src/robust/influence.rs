@@ -42,12 +42,7 @@ impl<'a> RowInfluence<'a> {
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { fit_rows, models, .. } = calibration;
         let session = calibration.session(&data, &packed);
-        let free = fit::free_parameters(
-            &session,
-            &models.calibrated,
-            fit_rows,
-            screw_axes(models.calibrated.kinds()),
-        );
+        let free = fit::free_parameters(&session, &models.calibrated, fit_rows, screw_axes(models.calibrated.kinds()));
         let length_m = session.length_m;
         let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
         if !made.data.is_empty() {

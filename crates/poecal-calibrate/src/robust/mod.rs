@@ -47,11 +47,7 @@ pub(crate) struct RobustFit {
 }
 
 /// Fits as the options state: by least squares, by a robust loss, or by Tukey's if least squares show outliers.
-pub(crate) fn fit(
-    task: &FitTask<'_>,
-    registration: &Registration<'_>,
-    start: &RegisteredStart,
-) -> Result<RobustFit> {
+pub(crate) fn fit(task: &FitTask<'_>, registration: &Registration<'_>, start: &RegisteredStart) -> Result<RobustFit> {
     let configurations = &RepeatedConfigurations::new(task.session.data, task.rows);
     let attempt = |loss, other| attempt(task, configurations, registration, start, loss, other);
     let ordinary = |found| finish_least_squares(task, configurations, found, start);
@@ -84,11 +80,7 @@ pub(crate) fn fit(
 }
 
 /// Fits by least squares without some rows; these rows, and no others, are then suspected.
-pub(crate) fn fit_without(
-    task: &FitTask<'_>,
-    start: &RegisteredStart,
-    left_out: &[u32],
-) -> Result<RobustFit> {
+pub(crate) fn fit_without(task: &FitTask<'_>, start: &RegisteredStart, left_out: &[u32]) -> Result<RobustFit> {
     let is_left_out = |row: &u32| left_out.binary_search(row).is_ok();
     let kept: Vec<u32> = task.rows.iter().copied().filter(|row| !is_left_out(row)).collect();
     let of_kept = FitTask { rows: &kept, ..*task };
@@ -97,8 +89,7 @@ pub(crate) fn fit_without(
     let weights: Vec<f64> = (0..count).map(|row| f64::from(u8::from(!is_left_out(&row)))).collect();
     let weighted = FitTask { weights: Some(&weights), ..*task };
     let configurations = RepeatedConfigurations::new(task.session.data, task.rows);
-    let robustness =
-        judge_rows(&weighted, &configurations, judging_fit(&fitted), &weights, Some(Loss::Tukey));
+    let robustness = judge_rows(&weighted, &configurations, judging_fit(&fitted), &weights, Some(Loss::Tukey));
     let suspected: Vec<bool> = (0..count).map(|row| is_left_out(&row)).collect();
     Ok(RobustFit { fitted, robustness: robustness.with_suspects(&suspected) })
 }
@@ -213,8 +204,7 @@ fn attempt(
     other: Option<&Estimate>,
 ) -> Result<RobustFit> {
     let source = *source;
-    let mut best =
-        ReweightedFit::new(task, configurations, register_robustly(registration, registered), *noise);
+    let mut best = ReweightedFit::new(task, configurations, register_robustly(registration, registered), *noise);
     best.run(task, Loss::Huber, source);
     if let Some(other) = other.filter(|_| task.is_suspicious(3f64.sqrt() * best.position_m())) {
         let mut second = ReweightedFit::new(task, configurations, other.clone(), *noise);
@@ -241,12 +231,7 @@ struct ReweightedFit<'c> {
 }
 
 impl<'c> ReweightedFit<'c> {
-    fn new(
-        task: &FitTask<'_>,
-        configurations: &'c RepeatedConfigurations,
-        mut start: Estimate,
-        noise: Noise,
-    ) -> Self {
+    fn new(task: &FitTask<'_>, configurations: &'c RepeatedConfigurations, mut start: Estimate, noise: Noise) -> Self {
         start.recentre(&task.session, task.rows);
         let weights = vec![1.0; task.session.data.len()];
         ReweightedFit {
@@ -290,11 +275,8 @@ impl<'c> ReweightedFit<'c> {
             if self.reweight(task, &parts, loss) < SETTLED {
                 break;
             }
-            let weighted = FitTask {
-                weights: Some(&self.weights),
-                options: &quick,
-                ..self.with_prior_weight(task, source)
-            };
+            let weighted =
+                FitTask { weights: Some(&self.weights), options: &quick, ..self.with_prior_weight(task, source) };
             let (estimate, _, summary) = weighted.fit(self.estimate.clone(), self.noise);
             self.iterations += summary.iterations;
             self.trace.extend(summary.trace);
@@ -338,8 +320,7 @@ impl<'c> ReweightedFit<'c> {
                 let before = self.noise;
                 let of_kept = FitTask { rows: &kept, ..*task };
                 let unknowns = found.as_ref().map_or(unknowns, |found| of_kept.effective_unknowns(found));
-                let by_rotations =
-                    found.as_ref().and_then(|found| of_kept.determined_by_rotations(found, before));
+                let by_rotations = found.as_ref().and_then(|found| of_kept.determined_by_rotations(found, before));
                 let session = &task.session;
                 match estimate_noise(session, &kept, &self.estimate, unknowns, by_rotations, before) {
                     Some(noise) => self.noise = merge_stated_noise(task.options, noise),
@@ -348,8 +329,8 @@ impl<'c> ReweightedFit<'c> {
                 parts = scale::parts(&task.session, task.rows, &self.estimate, self.noise);
             }
             let kept_parts = parts.iter().zip(task.rows).filter(|(_, row)| kept.binary_search(row).is_ok());
-            self.scale = RobustScale::from_rows(kept_parts.map(|(part, _)| part), unknowns)
-                .at_least_rounding(self.noise);
+            self.scale =
+                RobustScale::from_rows(kept_parts.map(|(part, _)| part), unknowns).at_least_rounding(self.noise);
             let change = self.reweight(task, &parts, loss);
             if change < SETTLED && found.is_some() {
                 break;
@@ -370,8 +351,7 @@ impl<'c> ReweightedFit<'c> {
         found.report.iterations += self.iterations;
         found.report.trace.splice(0..0, self.trace);
         let fitted = weighted.finish(found, self.noise, source)?;
-        let robustness =
-            judge_rows(&weighted, self.configurations, judging_fit(&fitted), &self.weights, Some(loss));
+        let robustness = judge_rows(&weighted, self.configurations, judging_fit(&fitted), &self.weights, Some(loss));
         Ok(RobustFit { fitted, robustness })
     }
 }

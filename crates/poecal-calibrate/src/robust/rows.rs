@@ -102,11 +102,7 @@ impl Robustness {
         Some(format!(
             "found {} ({fitted} of {} fitted rows, {held_out} of {} held out), too far off for noise: {what}; \
              `outliers` in calibration.json and residuals.csv name the rows",
-            if fitted + held_out == 1 {
-                "1 outlier".to_owned()
-            } else {
-                format!("{} outliers", fitted + held_out)
-            },
+            if fitted + held_out == 1 { "1 outlier".to_owned() } else { format!("{} outliers", fitted + held_out) },
             fit_rows.len(),
             held_out_rows.len()
         ))
@@ -143,8 +139,7 @@ impl Bounds {
 
 /// True if there are enough numbers for a robust scale: twice the unknowns. Residuals of fewer reflect the fit, not the noise.
 pub(crate) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowResiduals>, unknowns: f64) -> bool {
-    parts.flat_map(RowResiduals::iter).map(|(_, part)| part.components).sum::<usize>() as f64
-        >= 2.0 * unknowns
+    parts.flat_map(RowResiduals::iter).map(|(_, part)| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
 }
 
 /// A fit by which rows are judged.
@@ -185,8 +180,7 @@ pub(crate) fn judge_rows(
         Robustness { loss, rows, scale: scale.0, training_rest, held_out_rest }
     };
     let of_fit = || task.rows.iter().map(|&row| (row, &rows.parts[row as usize]));
-    let scale =
-        RobustScale::from_rows(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    let scale = RobustScale::from_rows(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
     if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
         let judged = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
         return robustness(rows.with_gross(judged, scale), scale);

@@ -19,12 +19,7 @@ pub(crate) struct QuantityResidual {
 pub(crate) type RowResiduals = ByQuantity<QuantityResidual>;
 
 /// Whitened parts of some rows.
-pub(crate) fn parts(
-    session: &Session<'_>,
-    rows: &[u32],
-    estimate: &Estimate,
-    noise: Noise,
-) -> Vec<RowResiduals> {
+pub(crate) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, noise: Noise) -> Vec<RowResiduals> {
     session.map_squares(rows, estimate, |observation, squares| {
         let whitened = session.whiten_squares(observation, squares.map(|(squares, _)| squares), noise);
         ByQuantity::from_fn(|quantity| QuantityResidual {
@@ -65,9 +60,7 @@ impl RobustScale {
 
     /// Length of a row's residual in units of the scaled noise, and its number of components.
     pub(crate) fn length(&self, row: &RowResiduals) -> (f64, usize) {
-        let of = |(quantity, part): (Quantity, &QuantityResidual)| {
-            part.squares / (self.0[quantity] * self.0[quantity])
-        };
+        let of = |(quantity, part): (Quantity, &QuantityResidual)| part.squares / (self.0[quantity] * self.0[quantity]);
         let squares: f64 = row.iter().map(of).sum();
         (squares.sqrt(), row.iter().map(|(_, part)| part.components).sum())
     }
@@ -89,9 +82,7 @@ pub(crate) fn settle(
             median_scale(open, left).map_or(noise[quantity], |scale| (scale * noise[quantity]).max(ROUNDING))
         });
         settled = merge_stated_noise(options, found);
-        for (quantity, part) in
-            parts.iter_mut().flat_map(RowResiduals::values_mut).filter(|(_, part)| !part.stated)
-        {
+        for (quantity, part) in parts.iter_mut().flat_map(RowResiduals::values_mut).filter(|(_, part)| !part.stated) {
             let ratio = noise[quantity] / settled[quantity];
             part.squares *= ratio * ratio;
         }

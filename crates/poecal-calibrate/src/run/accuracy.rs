@@ -115,8 +115,7 @@ impl ModelAccuracy {
             let (what, rms) = (CORNERS.to_owned(), pixels.rms_mm);
             return JudgingError { what, rms, unit: Unit::Metre };
         }
-        let (quantity, rms) =
-            self.leading_value().map_or((Quantity::Position, 0.0), |(it, found)| (it, found.rms));
+        let (quantity, rms) = self.leading_value().map_or((Quantity::Position, 0.0), |(it, found)| (it, found.rms));
         JudgingError { what: format!("{} error", quantity.name()), rms, unit: quantity.unit() }
     }
 }

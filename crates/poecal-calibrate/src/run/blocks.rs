@@ -47,28 +47,21 @@ impl BlockChoice {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if the robot has no such masses, weights or factors, or gravity is unknown.
-    pub(crate) fn with_terms(
-        &self,
-        robot: Robot,
-        data: &Dataset,
-        gravity: GravityDirection,
-    ) -> Result<Robot> {
+    pub(crate) fn with_terms(&self, robot: Robot, data: &Dataset, gravity: GravityDirection) -> Result<Robot> {
         let names = names(&robot, data);
         let mut found = robot;
         for word in &self.free {
-            let needs_more =
-                |it: &(usize, Term)| it.1.needs_gravity() || it.1.argument() == TermArgument::Factor;
+            let needs_more = |it: &(usize, Term)| it.1.needs_gravity() || it.1.argument() == TermArgument::Factor;
             let Some((joint, term)) = further_term(&names, word).filter(needs_more) else { continue };
             if term.needs_gravity() && found.gravity.is_none() {
                 let GravityDirection::Known(direction) = gravity else {
-                    return ErrorKind::Option.refuse(format!(
-                        "found `{word}` to be fitted, expected a known direction of gravity"
-                    ));
+                    return ErrorKind::Option
+                        .refuse(format!("found `{word}` to be fitted, expected a known direction of gravity"));
                 };
                 found.gravity = Some(Gravity::of_unit_weights(&found, direction));
             }
-            let is_pulled = !term.needs_gravity()
-                || Statics::new(&found).is_some_and(|statics| statics.is_pulled(joint, term));
+            let is_pulled =
+                !term.needs_gravity() || Statics::new(&found).is_some_and(|statics| statics.is_pulled(joint, term));
             let carried = || (!is_pulled).then(|| "one of what the joint carries".to_owned());
             if let Some(needed) = found.lacks(term).or_else(carried) {
                 return ErrorKind::Option.refuse(format!("found `{word}` to be fitted, expected {needed}"));
@@ -137,11 +130,7 @@ impl BlockChoice {
             if meant().all(|(block, _)| matches!(block, Block::Target(_))) {
                 open.extend(meant().filter_map(|(block, _)| match block {
                     Block::Target(target) => Some(*target),
-                    Block::Axis(_)
-                    | Block::Frame(_)
-                    | Block::Term(..)
-                    | Block::Range(..)
-                    | Block::Clock(..) => None,
+                    Block::Axis(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) | Block::Clock(..) => None,
                 }));
             }
         }
@@ -221,8 +210,7 @@ fn match_blocks(names: &BlockNames, blocks: &[Block], word: &str) -> Vec<bool> {
         ("joints", Block::Axis(_)) | ("targets", Block::Target(_)) | ("frames", Block::Frame(_)) => true,
         (_, Block::Axis(joint)) => {
             let is_joint = names.joints.get(*joint).is_some_and(|name| name == word);
-            is_joint && !["targets", "frames"].contains(&word)
-                || pattern.matches(&names.name_of_block(*block))
+            is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.name_of_block(*block))
         }
         // The name of the term alone means the blocks of all instruments.
         (_, Block::Range(_, term)) => {
@@ -231,9 +219,7 @@ fn match_blocks(names: &BlockNames, blocks: &[Block], word: &str) -> Vec<bool> {
         (_, Block::Clock(_, term)) => {
             word == term.name() || word != "*" && pattern.matches(&names.name_of_block(*block))
         }
-        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => {
-            pattern.matches(&names.name_of_block(*block))
-        }
+        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.name_of_block(*block)),
     };
     blocks.iter().map(is_meant).collect()
 }
@@ -244,8 +230,7 @@ fn no_range(name: &str) -> Error {
 }
 
 fn unknown_word(names: &BlockNames, blocks: &[Block], word: &str) -> Error {
-    let mut listed: Vec<String> =
-        blocks.iter().take(LISTED).map(|block| names.name_of_block(*block)).collect();
+    let mut listed: Vec<String> = blocks.iter().take(LISTED).map(|block| names.name_of_block(*block)).collect();
     if blocks.len() > LISTED {
         let last = blocks.last().map(|block| names.name_of_block(*block));
         listed.push("…".to_owned());

@@ -91,8 +91,7 @@ pub(crate) fn place_tip(
     calibrated.terms.clone_from(&estimate.terms);
     calibrated.terms.retain(|it| it.coefficient != 0.0);
     let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
-    calibrated.home =
-        last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
+    calibrated.home = last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
     let is_tip = |name: &Option<String>| move_tip && name.is_none();
     let named = data.targets.iter().zip(frames).find(|(name, _)| is_tip(name));
     let named = match named {

@@ -11,9 +11,8 @@ use poecal_numerics::error::{ErrorKind, Result};
 pub(crate) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()> {
     let Session { robot, data, unknowns, .. } = *session;
     let joints = robot.joints.iter().enumerate().filter(|(joint, _)| unknowns.moves_axis(*joint));
-    let screws: usize =
-        joints.map(|(_, joint)| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum::<usize>()
-            + unknowns.terms.len();
+    let screws: usize = joints.map(|(_, joint)| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum::<usize>()
+        + unknowns.terms.len();
     let mut is_seen = vec![false; data.targets.len()];
     fit_rows.iter().for_each(|&row| is_seen[data.observations[row as usize].target] = true);
     for (is_seen, name) in is_seen.into_iter().zip(&data.targets) {
@@ -45,11 +44,11 @@ pub(crate) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let given: usize = fit_rows.iter().map(|&row| data.observations[row as usize].measurement.dim()).sum();
     if given < needed {
         return ErrorKind::Problem.refuse(format!(
-                "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
+            "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
                  ({screws} of the screws, {targets} of the targets{}): measure more configurations, or hold out fewer",
-                measurements_words(fit_rows.len()),
-                of_devices(devices)
-            ));
+            measurements_words(fit_rows.len()),
+            of_devices(devices)
+        ));
     }
     Ok(())
 }

@@ -34,9 +34,7 @@ pub fn free_parameters(
     let stations = (0..=estimate.further_devices.len()).filter(|&station| Some(station) != held);
     let absent = stations_to_locate(data, rows);
     let is_free = |station: &usize| {
-        unknowns.moves_frame(*station)
-            && estimate.tree.shared_target(*station).is_none()
-            && !absent.contains(station)
+        unknowns.moves_frame(*station) && estimate.tree.shared_target(*station).is_none() && !absent.contains(station)
     };
     let frames = stations.filter(is_free).map(|station| device_parameter(data, station, rows));
     let is_free = |parameter: &Parameter| match parameter.model().subject() {

@@ -52,12 +52,7 @@ pub struct FormulationWords {
 
 impl Default for FormulationWords {
     fn default() -> Self {
-        FormulationWords {
-            formulation: "adjoint",
-            pose_residual: "tool",
-            method: "levenberg-marquardt",
-            note: None,
-        }
+        FormulationWords { formulation: "adjoint", pose_residual: "tool", method: "levenberg-marquardt", note: None }
     }
 }
 

@@ -24,8 +24,8 @@ pub(crate) fn noise_ratios(session: &Session<'_>, rows: &[u32], fit: &RobustFit)
     let stations = session.data.station_count();
     let rows: Vec<u32> = fit.robustness.rest(rows);
     let mut sums: Vec<ByQuantity<NoiseSum>> = vec![ByQuantity::default(); stations];
-    let squares = session
-        .map_squares(&rows, &fit.fitted.estimate, |observation, squares| (observation.station, squares));
+    let squares =
+        session.map_squares(&rows, &fit.fitted.estimate, |observation, squares| (observation.station, squares));
     for (&row, (station, squares)) in rows.iter().zip(squares) {
         let observation = session.observation(row);
         let noise = session.noise_of(observation, fit.fitted.noise);

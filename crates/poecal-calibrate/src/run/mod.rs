@@ -26,8 +26,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::{
-    CalibrationOptions, Corrections, DeviceFrameKnowledge, NoiseSource, estimate_noise, nominal_estimate,
-    split_rows,
+    CalibrationOptions, Corrections, DeviceFrameKnowledge, NoiseSource, estimate_noise, nominal_estimate, split_rows,
 };
 use crate::run::blocks::refuse_frames;
 use crate::run::count::check_count;
@@ -69,11 +68,7 @@ pub(crate) struct CalibrationRun<'a> {
 }
 
 /// The nominal estimate, with held frames as in an earlier calibration.
-fn initial_estimate(
-    robot: &Robot,
-    data: &Dataset,
-    (options, unknowns): (&CalibrationOptions, &Unknowns),
-) -> Estimate {
+fn initial_estimate(robot: &Robot, data: &Dataset, (options, unknowns): (&CalibrationOptions, &Unknowns)) -> Estimate {
     let mut start = nominal_estimate(robot, data);
     for (station, device) in options.devices.iter().enumerate().take(data.station_count()) {
         if !unknowns.moves_frame(station) {
@@ -138,15 +133,7 @@ impl<'a> CalibrationRun<'a> {
     /// Robot and measurements, with the noises of the instruments.
     pub(crate) fn session<'s>(&'s self, noise_ratios: &'s [Noise]) -> Session<'s> {
         let CalibrationRun { robot, data, packed, length_m, device_free, unknowns, .. } = self;
-        Session {
-            robot,
-            data,
-            packed,
-            length_m: *length_m,
-            device_free: *device_free,
-            noise_ratios,
-            unknowns,
-        }
+        Session { robot, data, packed, length_m: *length_m, device_free: *device_free, noise_ratios, unknowns }
     }
 
     /// Runs a step on a thread of the pool.
@@ -193,9 +180,7 @@ fn about_mean_factors(robot: &Robot, data: &Dataset) -> Robot {
     if data.is_empty() {
         return found;
     }
-    for (at, factor) in
-        found.factors.iter_mut().enumerate().filter(|(_, it)| it.group() == TermGroup::Factors)
-    {
+    for (at, factor) in found.factors.iter_mut().enumerate().filter(|(_, it)| it.group() == TermGroup::Factors) {
         let values = (0..data.len()).filter_map(|row| robot.factors_of(data.readings(row)).get(at));
         factor.reference = values.sum::<f64>() / data.len() as f64;
     }

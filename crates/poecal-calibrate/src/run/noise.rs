@@ -51,8 +51,7 @@ pub(crate) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     if source == NoiseSource::Rows {
         // No row uses this; it is the reported value.
         for (quantity, noise) in noise.values_mut() {
-            let stated: Vec<f64> =
-                data.observations.iter().filter_map(|row| row.stated.get(quantity)).collect();
+            let stated: Vec<f64> = data.observations.iter().filter_map(|row| row.stated.get(quantity)).collect();
             let squares: f64 = stated.iter().map(|sigma| sigma * sigma).sum();
             if !stated.is_empty() {
                 *noise = (squares / stated.len() as f64).sqrt();
@@ -127,9 +126,7 @@ pub fn estimate_noise(
     if estimated.peek().is_some() && estimated.all(|deviation| deviation < ROUNDING) {
         return None;
     }
-    Some(ByQuantity::from_fn(|quantity| {
-        found[quantity].map_or(before[quantity], |deviation| deviation.max(ROUNDING))
-    }))
+    Some(ByQuantity::from_fn(|quantity| found[quantity].map_or(before[quantity], |deviation| deviation.max(ROUNDING))))
 }
 
 /// Residuals of one noise.

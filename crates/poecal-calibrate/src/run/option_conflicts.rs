@@ -51,9 +51,7 @@ pub(crate) fn allowed_corrections(
                 (TermGroup::Factors, "temperature or another column"),
             ];
             let lacks = |group| !robot.factors.iter().any(|it| it.group() == group);
-            if let Some((group, column)) =
-                needed.into_iter().find(|(group, _)| sizes[*group] > 0.0 && lacks(*group))
-            {
+            if let Some((group, column)) = needed.into_iter().find(|(group, _)| sizes[*group] > 0.0 && lacks(*group)) {
                 refuse_found(&format!(
                     "{} among the corrections and no factor for it, expected {column} among the factors (--factors)",
                     group.name()

@@ -44,8 +44,7 @@ pub(crate) fn left_by_pull(
 fn remaining_variance(seen: &NormalEquations, believed: &NormalEquations) -> Option<f64> {
     let n = seen.dim();
     let redundant = seen.residuals.checked_sub(n).filter(|it| *it >= REDUNDANT)?;
-    let kept: Vec<f64> =
-        seen.gram.iter().zip(&believed.gram).map(|(own, prior)| own + KEPT * prior).collect();
+    let kept: Vec<f64> = seen.gram.iter().zip(&believed.gram).map(|(own, prior)| own + KEPT * prior).collect();
     let largest = (0..n).map(|i| kept[i * n + i]).fold(0.0, f64::max);
     let factor = linalg::cholesky(&kept, n, ROUNDING * largest)?;
     let step = linalg::cholesky_solve(&factor, &seen.gradient);

@@ -27,8 +27,7 @@ impl FitTask<'_> {
     ) -> Option<(Option<Estimate>, usize)> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
-            Problem::new(self.session, sample.clone(), self.free_parameters(estimate), noise)
-                .with_prior(self.prior)
+            Problem::new(self.session, sample.clone(), self.free_parameters(estimate), noise).with_prior(self.prior)
         };
         if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
             return None;
@@ -88,13 +87,11 @@ impl FitTask<'_> {
             }
             let problem = self.problem(&estimate, noise);
             let layout = problem.layout();
-            let Some(step) = gauge::null_step(&estimate, robot, layout, &normal.gram, length_m, base_free)
-            else {
+            let Some(step) = gauge::null_step(&estimate, robot, layout, &normal.gram, length_m, base_free) else {
                 break;
             };
             let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
-            let (moved, _, summary) =
-                self.minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
+            let (moved, _, summary) = self.minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
             let moved_normal = problem.normal(&moved);
             if length < 1e-10 || moved_normal.cost > normal.cost * (1.0 + 1e-6) + 1e-12 {
                 break;

@@ -37,8 +37,7 @@ impl CalibrationRun<'_> {
         let joints = (self.options.formulation.joint_parameters)(registered.kinds());
         let free = free_parameters(&session, registered, &self.fit_rows, joints);
         let unknowns: usize = free.iter().map(|it| it.model().columns().len()).sum();
-        let numbers: usize =
-            self.fit_rows.iter().map(|&row| session.observation(row).measurement.dim()).sum();
+        let numbers: usize = self.fit_rows.iter().map(|&row| session.observation(row).measurement.dim()).sum();
         if numbers >= ENOUGH * unknowns {
             return Vec::new();
         }

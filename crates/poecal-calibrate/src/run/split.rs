@@ -29,9 +29,8 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
         return ErrorKind::Option
             .refuse(format!("found a held-out share of {share}, expected a number from 0 to below 1"));
     }
-    let count = u32::try_from(data.len()).map_err(|_| {
-        ErrorKind::Problem.error(format!("found {} rows, expected at most {}", data.len(), u32::MAX))
-    })?;
+    let count = u32::try_from(data.len())
+        .map_err(|_| ErrorKind::Problem.error(format!("found {} rows, expected at most {}", data.len(), u32::MAX)))?;
     let stated = data.observations.iter().any(|row| row.set.is_some());
     let held_out: Vec<bool> = if stated {
         data.observations.iter().map(|row| row.set == Some(Set::HeldOut)).collect()
@@ -40,9 +39,8 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
     };
     let (held_out_count, fitted): (Vec<u32>, Vec<u32>) = (0..count).partition(|&row| held_out[row as usize]);
     if fitted.is_empty() {
-        return ErrorKind::Problem.refuse(format!(
-            "found {count} rows of which none is to be fitted, expected some in the set `fit`"
-        ));
+        return ErrorKind::Problem
+            .refuse(format!("found {count} rows of which none is to be fitted, expected some in the set `fit`"));
     }
     if stated {
         refuse_copies(data, &held_out, held_out_count.len())?;
@@ -65,9 +63,7 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Re
     for group in data.group_similar(&data.all_rows(), SAME, 2, |_| 0) {
         let (judging, fitted): (Vec<u32>, Vec<u32>) = group.into_iter().partition(is_held_out);
         copies.extend(
-            judging
-                .into_iter()
-                .filter_map(|row| Some((row, *fitted.iter().find(|&&other| is_copy(row, other))?))),
+            judging.into_iter().filter_map(|row| Some((row, *fitted.iter().find(|&&other| is_copy(row, other))?))),
         );
     }
     let Some(&(row, other)) = copies.first().filter(|_| 2 * copies.len() >= held_out_count) else {
@@ -144,11 +140,7 @@ fn is_open(data: &Dataset, options: &CalibrationOptions) -> bool {
 }
 
 /// Number of configurations, if all are fitted by default because too few would have been held out.
-pub(crate) fn too_few_to_hold_out(
-    data: &Dataset,
-    options: &CalibrationOptions,
-    held_out: &[u32],
-) -> Option<usize> {
+pub(crate) fn too_few_to_hold_out(data: &Dataset, options: &CalibrationOptions, held_out: &[u32]) -> Option<usize> {
     let is_stated = data.observations.iter().any(|row| row.set.is_some());
     let is_chosen = is_open(data, options) && held_out.is_empty() && !is_stated;
     is_chosen.then(|| data.configurations(&data.all_rows()).len())

@@ -34,9 +34,7 @@ pub(crate) fn locate_stations<'e>(
     noise: Noise,
 ) -> Cow<'e, Estimate> {
     let mut stations = stations_to_locate(session.data, fitted);
-    stations.retain(|&station| {
-        session.unknowns.moves_frame(station) && estimate.tree.shared_target(station).is_none()
-    });
+    stations.retain(|&station| session.unknowns.moves_frame(station) && estimate.tree.shared_target(station).is_none());
     if stations.is_empty() || !session.device_free {
         return Cow::Borrowed(estimate);
     }

@@ -52,11 +52,7 @@ pub(crate) fn check_stations(
 }
 
 /// Refuses a fit without a tolerance if no measured quantity has a length: the best-fitting robot is then a point.
-pub(crate) fn check_length(
-    session: &Session<'_>,
-    options: &CalibrationOptions,
-    fitted: &[u32],
-) -> Result<()> {
+pub(crate) fn check_length(session: &Session<'_>, options: &CalibrationOptions, fitted: &[u32]) -> Result<()> {
     let has_tolerance = options.tolerance.is_some() || options.chooses_tolerance;
     if has_tolerance || !session.lacks_length(fitted) {
         return Ok(());

@@ -50,8 +50,7 @@ impl<'a> CalibrationRun<'a> {
     fn cost(&self, rows: &[u32], noise: Noise, fitted: &FinishedFit) -> Option<f64> {
         let free = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let of_rows = Problem::new(self.session(&[]), rows.to_vec(), free, noise).normal(&fitted.estimate);
-        let cost =
-            of_rows.cost / of_rows.mean_square().max(1.0) + self.prior.as_ref()?.cost(&fitted.estimate);
+        let cost = of_rows.cost / of_rows.mean_square().max(1.0) + self.prior.as_ref()?.cost(&fitted.estimate);
         cost.is_finite().then_some(cost)
     }
 
@@ -80,8 +79,7 @@ impl<'a> CalibrationRun<'a> {
 
     /// States that the rows leave the positions of targets undetermined, and recommends measurements.
     pub(crate) fn open_targets(&self) -> Option<String> {
-        let (open_m, sigma_m) =
-            self.open_targets_m.filter(|open| *open > OPEN_M).zip(self.unknowns.target_sigma_m)?;
+        let (open_m, sigma_m) = self.open_targets_m.filter(|open| *open > OPEN_M).zip(self.unknowns.target_sigma_m)?;
         Some(format!(
             "the rows leave the place of the target on the last link open (standard deviation {:.0} mm), so it is taken to be within about {:.0} mm of the model's: \
              if it may be farther, measure configurations that turn the tool about other axes, or put its place into the model",

@@ -63,8 +63,7 @@ impl FitTask<'_> {
 
     /// Effective number of unknowns determined by the measurements rather than the prior: theory.md §6 (34).
     pub(crate) fn effective_unknowns(&self, found: &OngoingFit) -> f64 {
-        let by_prior =
-            self.prior_information(found).map(|believed| effective_unknowns(&found.normal, &believed));
+        let by_prior = self.prior_information(found).map(|believed| effective_unknowns(&found.normal, &believed));
         found.normal.dim() as f64 - by_prior.unwrap_or(0.0)
     }
 
@@ -80,8 +79,7 @@ impl FitTask<'_> {
     /// True if the residuals are evidently bias of the prior and no instrument noise; never if the prior alone determines the size of the robot.
     fn is_pull(&self, found: &OngoingFit, noise: Noise) -> bool {
         let Session { length_m, .. } = self.session;
-        let believed =
-            if self.session.lacks_length(self.rows) { None } else { self.prior_information(found) };
+        let believed = if self.session.lacks_length(self.rows) { None } else { self.prior_information(found) };
         let of_rows = FitTask { prior: None, ..*self };
         let seen = || of_rows.problem(&found.estimate, noise).normal(&found.estimate);
         let left = believed.and_then(|believed| left_by_pull(&found.normal, &believed, seen));
@@ -105,11 +103,7 @@ impl FitTask<'_> {
 
     /// Completes a first fit: further starts if needed, then rounds with noise and prior weight re-estimated (noise only if its source is the
     /// residuals).
-    pub(crate) fn complete_first_fit(
-        &self,
-        mut found: OngoingFit,
-        start: &RegisteredStart,
-    ) -> Result<FinishedFit> {
+    pub(crate) fn complete_first_fit(&self, mut found: OngoingFit, start: &RegisteredStart) -> Result<FinishedFit> {
         let RegisteredStart { mut noise, mut source, .. } = *start;
         let mut task = self.with_first_prior_weight(start);
         if let Some((better, tried)) = task.restart(&start.registered, &found.estimate, noise) {
@@ -143,11 +137,7 @@ impl FitTask<'_> {
                 break;
             }
             let estimate = found.estimate.clone();
-            found.update(if is_pull {
-                task.released_fit(estimate, noise)
-            } else {
-                task.fit(estimate, noise)
-            });
+            found.update(if is_pull { task.released_fit(estimate, noise) } else { task.fit(estimate, noise) });
         }
         task.finish(found, noise, source)
     }
@@ -217,8 +207,7 @@ impl FitTask<'_> {
         let offsets = |(parameter, _): (&Parameter, _)| matches!(parameter, Parameter::ValueTerm(_));
         // Requested terms belong to the robot.
         let is_of_formulation = self.options.formulation != Formulation::default();
-        report.joint_offsets =
-            (is_of_formulation && layout.parameters().any(offsets)).then(|| estimate.offsets());
+        report.joint_offsets = (is_of_formulation && layout.parameters().any(offsets)).then(|| estimate.offsets());
         Ok(FinishedFit { estimate, normal, layout, noise, noise_source: source, report })
     }
 

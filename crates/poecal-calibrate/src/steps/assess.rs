@@ -18,9 +18,7 @@ use crate::robust::RobustFit;
 use crate::run::CalibrationRun;
 use crate::run::calibrated_places::{UnmeasuredTip, place_tip, stations};
 use crate::run::rounding::describe_rounding;
-use crate::{
-    Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, RepairedSession, Trust, Verdict,
-};
+use crate::{Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, RepairedSession, Trust, Verdict};
 use poecal_arm::TermGroup;
 use poecal_fit::forensics::Diagnosis;
 use poecal_model::robot::Robot;
@@ -51,13 +49,8 @@ impl<'a> FittedSession<'a> {
         let signs = fit.signs(&summary, &figures, finds_moves);
         let (robot, targets) = fit.place_targets(&figures);
         let mistakes = signs.mistakes(&targets, fit.reach_m());
-        let judged = judge_level(&VerdictInput {
-            fit: &fit,
-            summary: &summary,
-            figures: &figures,
-            signs: &signs,
-            mistakes,
-        });
+        let judged =
+            judge_level(&VerdictInput { fit: &fit, summary: &summary, figures: &figures, signs: &signs, mistakes });
         let is_doubtful = judged.of_calibrated(&figures.trust.expected).level == Level::DoNotUse;
         if is_doubtful || signs.diagnosis.iter().any(Diagnosis::is_of_input) {
             // Mistakes in the input are no fault of a joint.
@@ -146,12 +139,7 @@ impl CalibratedFit<'_> {
 }
 
 /// The verdict on the delivered model.
-fn verdict(
-    judged: &LevelObjections,
-    correction: Option<&Correction>,
-    accuracy: &Accuracy,
-    trust: &Trust,
-) -> Verdict {
+fn verdict(judged: &LevelObjections, correction: Option<&Correction>, accuracy: &Accuracy, trust: &Trust) -> Verdict {
     match correction.filter(|it| it.has_terms()) {
         Some(found) => {
             let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);

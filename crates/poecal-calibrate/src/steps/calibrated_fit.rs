@@ -61,12 +61,7 @@ impl<'a> CalibrationRun<'a> {
     }
 
     /// One fit of the screws.
-    pub(crate) fn fit_with(
-        &self,
-        ratios: &[Noise],
-        start: &RegisteredStart,
-        robust: RobustLoss,
-    ) -> Result<RobustFit> {
+    pub(crate) fn fit_with(&self, ratios: &[Noise], start: &RegisteredStart, robust: RobustLoss) -> Result<RobustFit> {
         let (session, rows) = (self.session(ratios), &self.fit_rows);
         let options = CalibrationOptions { robust, ..self.options.clone() };
         let prior = self.prior.as_ref().map(|prior| (prior, 1.0));

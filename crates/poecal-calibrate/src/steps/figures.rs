@@ -80,8 +80,7 @@ impl CalibratedFit<'_> {
             cross_validation,
             (&models.registered, run.options.seed),
         );
-        let correction =
-            corrected.map(|it| it.judge(self, trust.cross_validation.as_ref(), &models.registered));
+        let correction = corrected.map(|it| it.judge(self, trust.cross_validation.as_ref(), &models.registered));
         if let Some(found) = correction.as_ref().filter(|it| !it.has_terms()) {
             self.allow_for_terms(&session, &mut trust, (found, &models.registered));
         }
@@ -122,35 +121,24 @@ impl CalibratedFit<'_> {
             Unit::Radian | Unit::One | Unit::Second => POSITIONS_FIRST * noise[quantity],
         });
         let start = &self.start.registered;
-        let registration =
-            |targets_free| run.registration(*session, kept, positions, targets_free).weighed_by(start);
+        let registration = |targets_free| run.registration(*session, kept, positions, targets_free).weighed_by(start);
         let again = |targets_free| register(&registration(targets_free), &run.delivered).0;
         let registered = if self.robust.robustness.loss.is_some() {
             again(true)
         } else {
             register_again(&registration(true), start)
         };
-        let [nominal, registered] = [again(false), registered]
-            .map(|it| locate_stations(session, &run.fit_rows, &it, noise).into_owned());
+        let [nominal, registered] =
+            [again(false), registered].map(|it| locate_stations(session, &run.fit_rows, &it, noise).into_owned());
         Models { nominal, registered, calibrated: self.estimate.clone() }
     }
 
     /// Adds the possible effect of terms to the uncertainty of geometry if the corrected model has no terms, so that both models are the same.
-    fn allow_for_terms(
-        &self,
-        session: &Session<'_>,
-        trust: &mut Trust,
-        (found, registered): (&Correction, &Estimate),
-    ) {
+    fn allow_for_terms(&self, session: &Session<'_>, trust: &mut Trust, (found, registered): (&Correction, &Estimate)) {
         let Some(uncertainty) = trust.uncertainty.as_mut() else { return };
         let CalibrationRun { robot, fit_rows: rows, options, .. } = &self.run;
-        let domain = Domain {
-            session,
-            rows,
-            coverage: &trust.coverage,
-            nominal: (robot, registered),
-            seed: options.seed,
-        };
+        let domain =
+            Domain { session, rows, coverage: &trust.coverage, nominal: (robot, registered), seed: options.seed };
         let of = (uncertainty, &trust.expected, &found.expected);
         if let Some(expected) = domain.expectations_with_terms(of) {
             trust.expected = expected;

@@ -34,9 +34,8 @@ pub(crate) fn paired_improvement(
         let sums = groups.iter().map(|group| {
             let own = group.iter().filter_map(|row| rows.binary_search(row).ok());
             own.fold([0.0, 0.0], |[a, b], at| {
-                let square = |errors: &[RowError]| {
-                    errors.get(at).and_then(|it| it.length(quantity)).map_or(0.0, |it| it * it)
-                };
+                let square =
+                    |errors: &[RowError]| errors.get(at).and_then(|it| it.length(quantity)).map_or(0.0, |it| it * it);
                 [a + square(before), b + square(after)]
             })
         });

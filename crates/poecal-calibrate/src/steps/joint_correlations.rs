@@ -149,11 +149,7 @@ struct JointDirection {
 }
 
 /// The largest part of each joint that has a notable one; the first one grows toward a positive direction.
-fn parts_of(
-    direction: &DVector<f64>,
-    changes: &[(JointChange, ChangeBySteps)],
-    length_m: f64,
-) -> Vec<JointDirection> {
+fn parts_of(direction: &DVector<f64>, changes: &[(JointChange, ChangeBySteps)], length_m: f64) -> Vec<JointDirection> {
     let whole = direction.norm_squared();
     let vector = |at: usize| Vector3::new(direction[at], direction[at + 1], direction[at + 2]);
     let mut sign = None;
@@ -180,11 +176,8 @@ fn parts_of(
             let angle = (tilt.norm() / length_m).to_degrees();
             format!("a tilt of {} deg {}", digits(angle), describe_direction("about", &(tilt * sign)))
         } else {
-            let (size, unit) = if turns {
-                ((offset.abs() / length_m).to_degrees(), "deg")
-            } else {
-                (1e3 * offset.abs(), "mm")
-            };
+            let (size, unit) =
+                if turns { ((offset.abs() / length_m).to_degrees(), "deg") } else { (1e3 * offset.abs(), "mm") };
             let sign = if offset * sign < 0.0 { "−" } else { "+" };
             format!("an offset of {sign}{} {unit}", digits(size))
         };
@@ -212,8 +205,7 @@ fn digits(value: f64) -> String {
 }
 
 fn words<'a>(parts: &[JointDirection], name: impl Fn(usize) -> &'a str, effect_m: f64) -> String {
-    let each: Vec<String> =
-        parts.iter().map(|part| format!("{} by {}", name(part.joint), part.words)).collect();
+    let each: Vec<String> = parts.iter().map(|part| format!("{} by {}", name(part.joint), part.words)).collect();
     let effect = digits(1e3 * effect_m);
     format!(
         "{}, all together or all the other way: predictions change by {effect} mm only (RMS, at the measured configurations)",

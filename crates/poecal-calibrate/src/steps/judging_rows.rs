@@ -71,9 +71,8 @@ impl JudgingRows {
         let most = self
             .improvement
             .map_or_else(String::new, |it| format!("; up to {:.2} times better with 95 % confidence", it.to));
-        let words = format!(
-            "{place} the calibrated screws are not seen to be better than the nominal ones {words}{most})"
-        );
+        let words =
+            format!("{place} the calibrated screws are not seen to be better than the nominal ones {words}{most})");
         [None, Some(words)]
     }
 }

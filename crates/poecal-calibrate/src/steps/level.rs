@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::AcceptedModel;
 
 /// Level of a verdict: the permitted use of the delivered model.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
     /// No use: the input, the fit, or both are wrong.
@@ -28,11 +26,7 @@ impl Level {
     pub const TABLE: [(Level, &'static str, &'static str); 5] = [
         (Level::DoNotUse, "do_not_use", "do not use"),
         (Level::Located, "located", "located"),
-        (
-            Level::MeasuredConfigurations,
-            "measured_configurations",
-            "use in configurations like those measured",
-        ),
+        (Level::MeasuredConfigurations, "measured_configurations", "use in configurations like those measured"),
         (Level::InsideSampledRange, "inside_sampled_range", "use inside the sampled range"),
         (Level::Good, "good", "good"),
     ];

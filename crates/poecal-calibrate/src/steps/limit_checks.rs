@@ -6,8 +6,8 @@ use crate::acceptance::{ConfigurationErrors, MeasuredError, mean_square};
 use crate::run::station_frames::rows_of_fitted_stations;
 use crate::validate::judge::{check_count, judged_rows};
 use crate::{
-    Acceptance, AcceptanceLimit, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows,
-    AcceptedStatistic, Calibration, JudgedCalibration,
+    Acceptance, AcceptanceLimit, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic,
+    Calibration, JudgedCalibration,
 };
 use poecal_fit::state::{PackedValues, RowError, Session};
 use poecal_model::measurement::{Dataset, MeasuredQuantities, Noise, Quantity};
@@ -86,27 +86,17 @@ pub fn accepted_by(
 
 impl RowErrors<'_> {
     fn limits(&self, limits: &[AcceptanceLimit]) -> Result<Vec<AcceptedLimit>> {
-        let measured = Quantity::ALL
-            .into_iter()
-            .filter_map(|quantity| Some((quantity, self.errors_of_quantity(quantity)?)));
+        let measured =
+            Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity, self.errors_of_quantity(quantity)?)));
         let measured: BTreeMap<Quantity, ConfigurationErrors> = measured.collect();
         let own = |limit: &AcceptanceLimit| {
             let of_it = measured.iter().filter(|(quantity, _)| quantity.unit() == limit.unit);
             let decided = of_it.filter_map(|(quantity, errors)| {
                 let counts = [errors.rows(), errors.configurations.len()];
-                Some(AcceptedLimit::from_finding(
-                    limit,
-                    *quantity,
-                    errors.bound_statistic(limit.statistic)?,
-                    counts,
-                ))
+                Some(AcceptedLimit::from_finding(limit, *quantity, errors.bound_statistic(limit.statistic)?, counts))
             });
             let decided: Vec<AcceptedLimit> = decided.collect();
-            if decided.is_empty() {
-                Err(unmeasured_error(limit, measured.keys().copied()))
-            } else {
-                Ok(decided)
-            }
+            if decided.is_empty() { Err(unmeasured_error(limit, measured.keys().copied())) } else { Ok(decided) }
         };
         Ok(limits.iter().map(own).collect::<Result<Vec<_>>>()?.concat())
     }
@@ -121,11 +111,7 @@ impl RowErrors<'_> {
             let possible = sigma(self.noise);
             let shown = self.shown.map_or(possible, |shown| sigma(shown).min(possible));
             let bound = upper_quantile(RISK, error.part(quantity).len()).sqrt();
-            Some(MeasuredError {
-                error: length,
-                possible_noise: bound * possible,
-                shown_noise: bound * shown,
-            })
+            Some(MeasuredError { error: length, possible_noise: bound * possible, shown_noise: bound * shown })
         };
         let grouped = self.session.data.configurations(self.rows);
         let configurations: Vec<Vec<MeasuredError>> =
@@ -137,13 +123,8 @@ impl RowErrors<'_> {
 }
 
 /// Mean square of rows that were left out in turn, with at most as many degrees of freedom as configurations: their individual errors are not kept.
-fn by_cross_validation(
-    calibration: &Calibration,
-    data: &Dataset,
-    accept: &AcceptanceLimits,
-) -> Result<Acceptance> {
-    let none =
-        |what: &str| ErrorKind::Problem.error(format!("found limits to accept and no rows held out, {what}"));
+fn by_cross_validation(calibration: &Calibration, data: &Dataset, accept: &AcceptanceLimits) -> Result<Acceptance> {
+    let none = |what: &str| ErrorKind::Problem.error(format!("found limits to accept and no rows held out, {what}"));
     let Some(found) = &calibration.trust.cross_validation else {
         return Err(none(
             "and too few for cross-validation, expected rows that judge the fit: measure more, or hold out a share of them",

@@ -44,30 +44,18 @@ pub struct RepeatScatter {
 }
 
 /// Scatter of the rows of each configuration by a state of the robot; `None` if nothing was measured three times.
-pub(crate) fn repeat_scatter(
-    session: &Session<'_>,
-    data: &Dataset,
-    estimate: &Estimate,
-) -> Option<RepeatScatter> {
+pub(crate) fn repeat_scatter(session: &Session<'_>, data: &Dataset, estimate: &Estimate) -> Option<RepeatScatter> {
     let groups = groups(data);
     let quantity = leading_quantity(data, *groups.first()?.first()?)?;
-    let is_own =
-        |rows: &&Vec<u32>| rows.first().and_then(|row| leading_quantity(data, *row)) == Some(quantity);
+    let is_own = |rows: &&Vec<u32>| rows.first().and_then(|row| leading_quantity(data, *row)) == Some(quantity);
     let own: Vec<&Vec<u32>> = groups.iter().filter(is_own).collect();
     let all = own.iter().map(|rows| {
         let mut errors = session.errors(rows, estimate);
         turn_to_first(data, rows, estimate, &mut errors);
         quantity.unit().in_shown_unit(scatter(&errors))
     });
-    let (smallest, largest) =
-        all.fold((f64::INFINITY, 0.0), |it: (f64, f64), own| (it.0.min(own), it.1.max(own)));
-    Some(RepeatScatter {
-        poses: own.len(),
-        rows: own.iter().map(|it| it.len()).sum(),
-        quantity,
-        smallest,
-        largest,
-    })
+    let (smallest, largest) = all.fold((f64::INFINITY, 0.0), |it: (f64, f64), own| (it.0.min(own), it.1.max(own)));
+    Some(RepeatScatter { poses: own.len(), rows: own.iter().map(|it| it.len()).sum(), quantity, smallest, largest })
 }
 
 /// Every target and configuration with three rows or more, in the order measured: theory.md §9 (46). Readings within 0.0001 rad or 0.1 mm

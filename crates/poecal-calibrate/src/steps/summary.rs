@@ -90,8 +90,7 @@ impl FitSummary {
         }
         let prior = PriorInformation::new(run.prior.as_ref(), estimate, &layout, session.length_m);
         let information = (layout, normal);
-        let mut summary =
-            FitSummary::new((&session, estimate), kept, information, prior, fitted.noise, &run.options);
+        let mut summary = FitSummary::new((&session, estimate), kept, information, prior, fitted.noise, &run.options);
         summary.variance /= if is_robust { EFFICIENCY } else { 1.0 };
         summary
     }

@@ -11,9 +11,7 @@ use poecal_fit::analysis::{JointCoverage, coverage};
 use poecal_fit::gauge::screw_deviations;
 use poecal_fit::start::{Registration, register_again};
 use poecal_fit::state::{Estimate, Session, rms_m, sample_rows};
-use poecal_fit::uncertainty::{
-    Bootstrap, CrossValidation, FitView, Shares, Uncertainty, bootstrap, discrepancy,
-};
+use poecal_fit::uncertainty::{Bootstrap, CrossValidation, FitView, Shares, Uncertainty, bootstrap, discrepancy};
 use poecal_model::measurement::Quantity;
 
 /// Rows by which the effect of each correction is computed.
@@ -61,9 +59,8 @@ pub(crate) fn trust(
 ) -> Trust {
     let FitSummary { layout, normal, remainder, .. } = summary;
     let found = discrepancy(view, normal, remainder, cross_validation.as_ref());
-    let mut uncertainty = (remainder.numbers > normal.dim())
-        .then(|| Uncertainty::new(view, layout.clone(), normal, &found))
-        .flatten();
+    let mut uncertainty =
+        (remainder.numbers > normal.dim()).then(|| Uncertainty::new(view, layout.clone(), normal, &found)).flatten();
     let coverage = coverage(&view.session, view.rows);
     let left_out_m = cross_validation.as_ref().and_then(|found| found.random.rms.get(Quantity::Position));
     let domain = Domain {
@@ -73,9 +70,9 @@ pub(crate) fn trust(
         nominal: (view.session.robot, registered),
         seed,
     };
-    let expected = uncertainty.as_mut().map_or_else(Expectations::default, |uncertainty| {
-        domain.expectations_beside(uncertainty, left_out_m)
-    });
+    let expected = uncertainty
+        .as_mut()
+        .map_or_else(Expectations::default, |uncertainty| domain.expectations_beside(uncertainty, left_out_m));
     let (joints, common) = joints(view, summary, uncertainty.as_ref());
     Trust {
         joints,
@@ -136,7 +133,6 @@ fn joints(
 
 /// An estimate with tool and device frame refitted.
 fn registered_again(view: &FitView<'_>, rows: &[u32], start: &Estimate) -> Estimate {
-    let registration =
-        Registration { session: view.session, rows, noise: view.noise, targets_free: true, prior: None };
+    let registration = Registration { session: view.session, rows, noise: view.noise, targets_free: true, prior: None };
     register_again(&registration, start)
 }

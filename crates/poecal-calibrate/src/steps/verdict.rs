@@ -66,8 +66,7 @@ impl LevelObjections {
         // Terms may describe effects that no rigid robot has, and improve a model whose axes are right.
         let too_large = self.too_large.as_ref().filter(|_| is_too_large(error, self.reach_m));
         let is_no_better = error.rms > (1.0 - WORTH) * self.nominal.rms;
-        let [no_better, unclear] =
-            [&self.no_better, &self.unclear].map(|it| it.as_ref().filter(|_| is_no_better));
+        let [no_better, unclear] = [&self.no_better, &self.unclear].map(|it| it.as_ref().filter(|_| is_no_better));
         self.verdict(AcceptedModel::Corrected, [no_better, too_large, unclear], expected)
     }
 
@@ -279,14 +278,7 @@ fn describe_drifted_axes(grounds: &VerdictInput<'_>) -> Vec<String> {
 /// Undetermined directions, except those of joints of one reading: no configuration separates them, and no prediction does.
 fn undetermined_directions(grounds: &VerdictInput<'_>) -> usize {
     let reading = |name: &String| {
-        grounds
-            .fit
-            .run
-            .robot
-            .joints
-            .iter()
-            .find(|joint| joint.name == *name)
-            .map(|joint| joint.reading.name.as_str())
+        grounds.fit.run.robot.joints.iter().find(|joint| joint.name == *name).map(|joint| joint.reading.name.as_str())
     };
     let is_one_reading = |direction: &&Direction| {
         let mut readings = direction.joints.iter().map(reading);
@@ -312,9 +304,7 @@ fn against_use_everywhere(grounds: &VerdictInput<'_>) -> Vec<String> {
         ));
     }
     let unknowns = grounds.figures.identifiability.parameters;
-    if trust.cross_validation.is_none()
-        || (grounds.summary.remainder.numbers as f64) < TESTED * unknowns as f64
-    {
+    if trust.cross_validation.is_none() || (grounds.summary.remainder.numbers as f64) < TESTED * unknowns as f64 {
         reasons.push(format!(
             "{} rows with {} measured numbers for {unknowns} unknowns are too few to test the fit",
             run.fit_rows.len(),
@@ -355,7 +345,5 @@ fn in_favour(expected: &Expectations, weakly: usize) -> String {
         format!(", and the expected error anywhere within the limits is {:.3} mm (RMS)", 1e3 * range.sigma_m)
     });
     let weakly = if weakly > 0 { format!(" ({weakly} weakly)") } else { String::new() };
-    format!(
-        "all unknowns are determined{weakly}, every joint was moved through half of its range or more{expected}"
-    )
+    format!("all unknowns are determined{weakly}, every joint was moved through half of its range or more{expected}")
 }

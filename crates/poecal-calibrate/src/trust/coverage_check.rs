@@ -141,11 +141,7 @@ impl JudgedRow {
 
 impl JudgedError {
     /// Error of a quantity, if it was measured.
-    fn from_error(
-        error: &RowError,
-        quantity: Quantity,
-        promised: Option<PredictiveDistribution>,
-    ) -> Option<Self> {
+    fn from_error(error: &RowError, quantity: Quantity, promised: Option<PredictiveDistribution>) -> Option<Self> {
         let length = error.length(quantity)?;
         let (measured, vector) = (error.measured_components(quantity), error.vector(quantity));
         let residual = std::array::from_fn(|k| if measured[k] { vector[k] } else { f64::NAN });
@@ -184,27 +180,15 @@ impl PredictedUncertainty<'_> {
     }
 
     /// Errors of some rows with their predictive distributions.
-    fn rows(
-        &self,
-        session: &Session<'_>,
-        estimate: &Estimate,
-        rows: &[u32],
-        errors: &[RowError],
-    ) -> Vec<JudgedRow> {
+    fn rows(&self, session: &Session<'_>, estimate: &Estimate, rows: &[u32], errors: &[RowError]) -> Vec<JudgedRow> {
         let Session { robot, data, packed, .. } = *session;
         let target = |row: &u32| data.observations[*row as usize].target;
-        let places = rows
-            .iter()
-            .map(|row| (*row as usize, self.targets.get(target(row)).copied().unwrap_or_default()));
+        let places = rows.iter().map(|row| (*row as usize, self.targets.get(target(row)).copied().unwrap_or_default()));
         let predicted = self.uncertainty.predictions_of(places, packed);
         // The model error contains the noise, unless the two were separated.
         let noise = self.uncertainty.discrepancy.noise;
-        let mut observed = ObservedCoverage {
-            session,
-            estimate,
-            linkage: Linkage::new(estimate),
-            chain: RowChain::default(),
-        };
+        let mut observed =
+            ObservedCoverage { session, estimate, linkage: Linkage::new(estimate), chain: RowChain::default() };
         let all = predicted.into_iter().zip(errors).zip(rows).map(|((predicted, error), &row)| {
             let own = session.noise_of(session.observation(row), noise);
             let errors = MeasuredQuantities::from_fn(|quantity| {
@@ -276,14 +260,10 @@ impl ObservedCoverage<'_> {
         seen.sensitivity(&self.chain.target, &mut sensitivity);
         let own = self.estimate.device(observation.station).rotation;
         let turn = own * self.estimate.device_from_base.rotation.transpose();
-        let [place, rotation] =
-            [predicted.position, predicted.rotation].map(|it| turn * it * turn.transpose());
-        let rows =
-            sensitivity.iter().zip(seen.channels()).filter(|(_, channel)| channel.quantity == quantity);
-        let rows: Vec<[Vector3<f64>; 2]> = rows
-            .take(3)
-            .map(|([a, b, c, p, q, r], _)| [Vector3::new(*a, *b, *c), Vector3::new(*p, *q, *r)])
-            .collect();
+        let [place, rotation] = [predicted.position, predicted.rotation].map(|it| turn * it * turn.transpose());
+        let rows = sensitivity.iter().zip(seen.channels()).filter(|(_, channel)| channel.quantity == quantity);
+        let rows: Vec<[Vector3<f64>; 2]> =
+            rows.take(3).map(|([a, b, c, p, q, r], _)| [Vector3::new(*a, *b, *c), Vector3::new(*p, *q, *r)]).collect();
         let mut covariance = Matrix3::zeros();
         for (i, [v, w]) in rows.iter().enumerate() {
             for (j, [moved, turned]) in rows.iter().enumerate() {
@@ -321,8 +301,7 @@ pub(crate) fn promised_rows(
     seen: &JudgedPredictions<'_>,
 ) -> Option<Vec<JudgedRow>> {
     let data = seen.session.data;
-    let refitted =
-        if seen.free.is_empty() { None } else { Some(refit_uncertainty(predicted, refit_tool, seen)?) };
+    let refitted = if seen.free.is_empty() { None } else { Some(refit_uncertainty(predicted, refit_tool, seen)?) };
     let own: Vec<usize> = (0..data.targets.len()).collect();
     let predicted = match &refitted {
         Some(uncertainty) => PredictedUncertainty { uncertainty, targets: &own, ..*predicted },

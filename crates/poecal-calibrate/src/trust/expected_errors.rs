@@ -111,20 +111,14 @@ impl Domain<'_> {
     }
 
     /// [`Self::expectations`], with the model error raised to the error of positions in cross-validation (metres, RMS).
-    pub(crate) fn expectations_beside(
-        &self,
-        uncertainty: &mut Uncertainty,
-        left_out_m: Option<f64>,
-    ) -> Expectations {
+    pub(crate) fn expectations_beside(&self, uncertainty: &mut Uncertainty, left_out_m: Option<f64>) -> Expectations {
         let found = self.expectations(uncertainty);
         // Errors of pictures in metres are noise of their corners in a direction that these hardly determine; the robot's errors are estimated
         // separately.
         let pictures = &self.session.data.pictures;
         let is_seen = self.rows.iter().all(|row| pictures.of_row(*row).is_some());
         match found.measured.zip(left_out_m).filter(|_| !is_seen) {
-            Some((measured, left_out_m)) if raise(uncertainty, measured, left_out_m) => {
-                self.expectations(uncertainty)
-            }
+            Some((measured, left_out_m)) if raise(uncertainty, measured, left_out_m) => self.expectations(uncertainty),
             _ => found,
         }
     }
@@ -136,11 +130,9 @@ impl Domain<'_> {
         let sample = sample_rows(self.rows, count);
         let measured: Vec<f64> =
             sample.iter().flat_map(|&row| packed.joint_values(row as usize).iter().copied()).collect();
-        let box_of_rows: Vec<[f64; 2]> =
-            self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect();
+        let box_of_rows: Vec<[f64; 2]> = self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect();
         let ranges = ranges(robot, self.coverage);
-        let [inside, anywhere] =
-            [&box_of_rows, &ranges].map(|it| draw_configurations(robot, it, count, self.seed));
+        let [inside, anywhere] = [&box_of_rows, &ranges].map(|it| draw_configurations(robot, it, count, self.seed));
         let quantile = uncertainty.quantiles()[Quantity::Position];
         let targets = data.targets.len().clamp(1, MOST_TARGETS);
         let of = |values: &[f64]| -> Vec<Vec<Matrix3<f64>>> {
@@ -202,20 +194,13 @@ fn draw_configurations(robot: &Robot, ranges: &[[f64; 2]], count: usize, seed: u
             .map(|[lower, upper]| lower + (upper - lower).max(0.0) * random::uniform_number(&mut generator))
             .map(|reading| if reading.is_finite() { reading } else { 0.0 })
             .collect();
-        values.extend(
-            robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(readings[index])),
-        );
+        values.extend(robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(readings[index])));
     }
     values
 }
 
 /// Mean squares of the expected errors of all targets by parts of each joint's range.
-fn range_parts(
-    robot: &Robot,
-    ranges: &[[f64; 2]],
-    values: &[f64],
-    errors: &[Vec<Matrix3<f64>>],
-) -> Vec<RangePart> {
+fn range_parts(robot: &Robot, ranges: &[[f64; 2]], values: &[f64], errors: &[Vec<Matrix3<f64>>]) -> Vec<RangePart> {
     let joints = ranges.len();
     let mut parts = Vec::new();
     for (joint, &[lower, upper]) in ranges.iter().enumerate() {

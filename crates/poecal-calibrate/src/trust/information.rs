@@ -32,8 +32,7 @@ impl<'a> FitInformation<'a> {
         let fitted = &fit.fitted;
         let free: Vec<Parameter> = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let problem = Problem::new(session, run.fit_rows.clone(), free, fitted.noise).with_weights(weights);
-        let prior =
-            PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
+        let prior = PriorInformation::new(run.prior.as_ref(), &fitted.estimate, &fitted.layout, session.length_m);
         let normal = problem.normal(&fitted.estimate);
         let factor = factor_of(&symmetric_from_upper(&prior.added_to(&normal.gram, 1.0), normal.dim()))?;
         let gradient = normal.gradient.iter().zip(&prior.normal.gradient);

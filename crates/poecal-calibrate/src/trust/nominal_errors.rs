@@ -83,15 +83,12 @@ impl Domain<'_> {
         let session = self.session;
         let linkages = [&uncertainty.estimate, self.nominal.1].map(Linkage::new);
         let frame = if session.device_free { 6 } else { 0 };
-        let moved: Vec<usize> =
-            (0..targets).filter(|target| session.unknowns.moves_target(*target)).collect();
+        let moved: Vec<usize> = (0..targets).filter(|target| session.unknowns.moves_target(*target)).collect();
         let (rows, width) = (both[0].rows(), frame + 3 * moved.len());
         let mut apart = DVector::zeros(3 * rows * targets);
         let mut columns = DMatrix::zeros(apart.len(), width);
         let mut chain = RowChain::default();
-        for (at, (target, row)) in
-            (0..targets).flat_map(|target| (0..rows).map(move |row| (target, row))).enumerate()
-        {
+        for (at, (target, row)) in (0..targets).flat_map(|target| (0..rows).map(move |row| (target, row))).enumerate() {
             let [found, nominal] = [0, 1].map(|which| {
                 chain.evaluate(&linkages[which], &both[which], row, target);
                 chain.target

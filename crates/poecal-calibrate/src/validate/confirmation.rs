@@ -65,13 +65,8 @@ impl Judgement {
 }
 
 /// Contradiction of errors to their predictive distribution: a smaller share inside their bounds than `share`, or more than twice the expected error.
-fn contradiction(
-    (errors, kept): (&ModelAccuracy, &CoverageCheck),
-    share: f64,
-    which: &str,
-) -> Option<String> {
-    let mut errors =
-        kept.parts.iter().filter_map(|(quantity, part)| Some((quantity, part, errors.get(quantity)?.rms)));
+fn contradiction((errors, kept): (&ModelAccuracy, &CoverageCheck), share: f64, which: &str) -> Option<String> {
+    let mut errors = kept.parts.iter().filter_map(|(quantity, part)| Some((quantity, part, errors.get(quantity)?.rms)));
     errors.find_map(|(quantity, part, rms)| {
         let (what, unit) = (quantity.name(), quantity.unit().symbol());
         let QuantityCoverage { expected_rms, inside_bound95 } = part;

@@ -182,8 +182,7 @@ pub fn judge(subject: &JudgedCalibration<'_>, data: &Dataset) -> Result<Judgemen
     });
     let packed = PackedValues::from_dataset(subject.calibrated, data);
     let rows = judged_rows(subject, subject.calibrated, data, &packed);
-    let promised =
-        subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
+    let promised = subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
     let (promised, in_sampled_range, mut each) = match promised {
         None => (None, None, rows.errors.iter().map(JudgedRow::from_error).collect::<Vec<_>>()),
         Some(each) => {
@@ -216,11 +215,8 @@ pub fn judge(subject: &JudgedCalibration<'_>, data: &Dataset) -> Result<Judgemen
 /// theory.md §9 (50). `None` if the rows are too few for it.
 #[must_use]
 pub fn improvement(subject: &JudgedCalibration<'_>, data: &Dataset) -> Option<Improvement> {
-    let both = JudgedCalibration {
-        refit_frame: subject.frame != DeviceFrameKnowledge::Base,
-        refit_tool: true,
-        ..*subject
-    };
+    let both =
+        JudgedCalibration { refit_frame: subject.frame != DeviceFrameKnowledge::Base, refit_tool: true, ..*subject };
     check_count(&both, data).ok()?;
     let [before, after] = [both.nominal, both.calibrated].map(|robot| {
         let packed = PackedValues::from_dataset(robot, data);
@@ -242,20 +238,13 @@ pub(crate) fn judged_rows<'a>(
     let mut estimate = nominal_estimate(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
     let mut free = Vec::new();
-    for (device, base_from_device) in
-        estimate.further_devices.iter_mut().zip(subject.further_base_from_device)
-    {
+    for (device, base_from_device) in estimate.further_devices.iter_mut().zip(subject.further_base_from_device) {
         *device = base_from_device.inverse();
     }
     estimate.ranges = subject.ranges.to_vec();
     if subject.refit_frame || subject.refit_tool {
-        let registration = Registration {
-            session,
-            rows: &rows,
-            noise: subject.noise,
-            targets_free: subject.refit_tool,
-            prior: None,
-        };
+        let registration =
+            Registration { session, rows: &rows, noise: subject.noise, targets_free: subject.refit_tool, prior: None };
         estimate = register(&registration, &estimate).0;
         free = free_parameters(&registration, &rows);
     }
@@ -281,11 +270,11 @@ pub(crate) fn check_count(subject: &JudgedCalibration<'_>, data: &Dataset) -> Re
         return Ok(());
     }
     ErrorKind::Problem.refuse(format!(
-            "found {} with {given} measured numbers, expected more than the {} unknowns to be refitted \
+        "found {} with {given} measured numbers, expected more than the {} unknowns to be refitted \
              ({frame} of the device frame, {tool} of the targets): measure more configurations, or refit less",
-            measurements_words(data.len()),
-            frame + tool
-        ))
+        measurements_words(data.len()),
+        frame + tool
+    ))
 }
 
 /// Relative difference of two equal errors: rounding of two fits of a frame.

@@ -107,8 +107,7 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
         return None;
     }
     let trust = &calibration.trust;
-    let (actual, expected, uncertainty) = match calibration.correction.as_deref().filter(|it| it.has_terms())
-    {
+    let (actual, expected, uncertainty) = match calibration.correction.as_deref().filter(|it| it.has_terms()) {
         Some(found) => (&found.robot, &found.expected, found.uncertainty.as_ref()),
         None => (&calibration.robot, &trust.expected, trust.uncertainty.as_ref()),
     };
@@ -160,8 +159,7 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
 
 /// The cells of the workspace that contain configurations; sorts the configurations by cell.
 fn cells(compared: &mut [ComparedConfiguration], cell_m: f64) -> Vec<WorkspaceCell> {
-    let at =
-        |it: &ComparedConfiguration| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
+    let at = |it: &ComparedConfiguration| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
     compared.sort_by_key(at);
     let cell = |own: &[ComparedConfiguration]| {
         let [height, radius] = at(own.first()?);
@@ -177,12 +175,7 @@ fn cells(compared: &mut [ComparedConfiguration], cell_m: f64) -> Vec<WorkspaceCe
 }
 
 /// Mean square errors of predicted positions (of the first target, or the tip) in configurations of these readings.
-fn expected_squares(
-    robot: &Robot,
-    readings: &[usize],
-    sample: &[Vec<f64>],
-    uncertainty: &Uncertainty,
-) -> Vec<f64> {
+fn expected_squares(robot: &Robot, readings: &[usize], sample: &[Vec<f64>], uncertainty: &Uncertainty) -> Vec<f64> {
     let indices = robot.reading_indices();
     let mut values = Vec::with_capacity(sample.len() * indices.len());
     for q in sample {
@@ -195,20 +188,16 @@ fn expected_squares(
 
 /// Sampled range of each of these readings; `None` if one has none.
 fn sampled_ranges(calibration: &Calibration, nominal: &Robot, readings: &[usize]) -> Option<Vec<[f64; 2]>> {
-    let ranges: Vec<[f64; 2]> =
-        calibration.trust.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect();
+    let ranges: Vec<[f64; 2]> = calibration.trust.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect();
     let allowed = allowed_readings(nominal, &ranges);
-    let own = readings
-        .iter()
-        .map(|&it| allowed.get(it).copied().filter(|ends| ends.iter().all(|end| end.is_finite())));
+    let own = readings.iter().map(|&it| allowed.get(it).copied().filter(|ends| ends.iter().all(|end| end.is_finite())));
     own.collect()
 }
 
 /// A configuration of the sample, spread evenly over these ranges.
 fn configuration(index: usize, allowed: &[[f64; 2]]) -> Vec<f64> {
-    let value = |([least, most], prime): (&[f64; 2], f64)| {
-        least + (most - least) * (0.5 + index as f64 * prime.sqrt()).fract()
-    };
+    let value =
+        |([least, most], prime): (&[f64; 2], f64)| least + (most - least) * (0.5 + index as f64 * prime.sqrt()).fract();
     allowed.iter().zip(PRIMES).map(value).collect()
 }
 
@@ -327,8 +316,7 @@ impl ArmPair<'_> {
             let mut products = Matrix6::identity() * f64::EPSILON;
             columns.iter().for_each(|column| products += column * column.transpose());
             let left = shift / reach;
-            let step =
-                cholesky_6(products)?.solve(&Vector6::new(left.x, left.y, left.z, turn.x, turn.y, turn.z));
+            let step = cholesky_6(products)?.solve(&Vector6::new(left.x, left.y, left.z, turn.x, turn.y, turn.z));
             for (value, column) in mended.iter_mut().zip(&columns) {
                 *value += column.dot(&step);
             }

@@ -58,8 +58,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: SessionKind, frame: DeviceFrameK
     let (tolerance, same) =
         if seed.is_multiple_of(2) { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };
     let options = CalibrationOptions { frame, held_out: Some(0.0), diagnose: false, tolerance, ..usual };
-    let fit =
-        |robot: &Robot| mean_square(&calibrate(robot, &made.data, &options).unwrap(), &made.data, robot);
+    let fit = |robot: &Robot| mean_square(&calibrate(robot, &made.data, &options).unwrap(), &made.data, robot);
     let optimum = fit(&elbow());
     assert!(optimum < RIGHT_OPTIMUM);
     fit(&start) < optimum * same
@@ -69,10 +68,8 @@ fn basins(kind: SessionKind, frame: DeviceFrameKnowledge) {
     for (deg, mm, trials, wanted) in BASINS {
         let trials = self::trials(if frame == DeviceFrameKnowledge::Base { trials } else { trials / 3 });
         let count = trials.count;
-        let missed: Vec<u64> = (trials.seeds())
-            .into_par_iter()
-            .filter(|&seed| !reaches_the_optimum(deg, mm, kind, frame, seed))
-            .collect();
+        let missed: Vec<u64> =
+            (trials.seeds()).into_par_iter().filter(|&seed| !reaches_the_optimum(deg, mm, kind, frame, seed)).collect();
         let share = 1.0 - missed.len() as f64 / count as f64;
         println!(
             "{kind:?}, frame {frame:?}, {deg} deg {mm} mm: {} of {count} reach the optimum ({:.1} %), missed by seeds {missed:?}",

@@ -29,8 +29,7 @@ fn move_rows_from(data: &mut Dataset, first: usize, by: impl Fn(usize, Vector3<f
 }
 
 fn calibrate_repaired(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> (Calibration, Dataset) {
-    let RepairedSession { calibration, data } =
-        calibrate_repairing(robot, data, options, &mut |_| {}).unwrap();
+    let RepairedSession { calibration, data } = calibrate_repairing(robot, data, options, &mut |_| {}).unwrap();
     (calibration, data.into_owned())
 }
 
@@ -59,36 +58,28 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
     let tilt = |v: Vector3<f64>| rotation::exp(&Vector3::new(0.0, 0.002, 0.004)) * v;
     for seed in trials.seeds() {
         let clean = session(seed, SessionKind::POINT);
-        let (calibration, _) =
-            calibrate_repaired(&clean.nominal, &clean.data, &CalibrationOptions::default());
-        assert!(
-            calibration.repairs.is_empty() && calibration.suspicions.is_empty(),
-            "{:?}",
-            calibration.repairs
-        );
+        let (calibration, _) = calibrate_repaired(&clean.nominal, &clean.data, &CalibrationOptions::default());
+        assert!(calibration.repairs.is_empty() && calibration.suspicions.is_empty(), "{:?}", calibration.repairs);
         assert!(!calibration.warnings.iter().any(|it| it.contains(EARLY)), "{:?}", calibration.warnings);
         let usual = error_mm(&clean, &calibration, 0.0);
         let mut lines = vec![format!("seed {seed}: clean {usual:.4} mm")];
-        let mut check =
-            |words: &str, data: &Dataset, kind: EventKind, from_row: usize, size: f64, within: f64| {
-                let (calibration, repaired) =
-                    calibrate_repaired(&clean.nominal, data, &CalibrationOptions::default());
-                let told: Vec<String> =
-                    calibration.suspicions.iter().map(|it| it.statement.clone()).collect();
-                assert_eq!(calibration.repairs.len(), 1, "{words}: {told:?} {:?}", calibration.repairs);
-                let event = &calibration.repairs[0];
-                let own = event.size_mm.or(event.size_deg).unwrap();
-                let slipped = if kind == EventKind::Zero { size.to_radians() } else { 0.0 };
-                let error = error_mm(&clean, &calibration, slipped);
-                lines.push(format!("  {words}: {} {error:.4} mm", event.statement));
-                assert_eq!((event.kind, event.from_row), (kind, from_row), "{}", event.statement);
-                assert!((own - size).abs() < within, "{}", event.statement);
-                assert!(event.error_after_mm.unwrap() < 0.8 * event.error_before_mm.unwrap());
-                // Half of the rows determine the arm with six numbers more: the error increases only a little.
-                assert!(error < 1.35 * usual + 0.01, "{words}: {error} mm, clean {usual} mm");
-                assert_eq!(repaired.len(), COUNT);
-                repaired
-            };
+        let mut check = |words: &str, data: &Dataset, kind: EventKind, from_row: usize, size: f64, within: f64| {
+            let (calibration, repaired) = calibrate_repaired(&clean.nominal, data, &CalibrationOptions::default());
+            let told: Vec<String> = calibration.suspicions.iter().map(|it| it.statement.clone()).collect();
+            assert_eq!(calibration.repairs.len(), 1, "{words}: {told:?} {:?}", calibration.repairs);
+            let event = &calibration.repairs[0];
+            let own = event.size_mm.or(event.size_deg).unwrap();
+            let slipped = if kind == EventKind::Zero { size.to_radians() } else { 0.0 };
+            let error = error_mm(&clean, &calibration, slipped);
+            lines.push(format!("  {words}: {} {error:.4} mm", event.statement));
+            assert_eq!((event.kind, event.from_row), (kind, from_row), "{}", event.statement);
+            assert!((own - size).abs() < within, "{}", event.statement);
+            assert!(event.error_after_mm.unwrap() < 0.8 * event.error_before_mm.unwrap());
+            // Half of the rows determine the arm with six numbers more: the error increases only a little.
+            assert!(error < 1.35 * usual + 0.01, "{words}: {error} mm, clean {usual} mm");
+            assert_eq!(repaired.len(), COUNT);
+            repaired
+        };
         let mut data = clean.data.clone();
         move_rows_from(&mut data, 40, |_, place| tilt(place) + Vector3::new(0.0, 0.002, 0.0));
         let (calibration, _) = calibrate_repaired(&clean.nominal, &data, &CalibrationOptions::default());
@@ -98,8 +89,7 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
         let repaired = check("device 1 mm", &data, EventKind::Device, 41, 1.0, 0.1);
         assert_eq!(repaired.stations.iter().flatten().collect::<Vec<_>>(), ["device", "device.2"]);
         let mut data = clean.data.clone();
-        let axes: Vec<_> =
-            (0..COUNT).map(|row| clean.actual.forward_kinematics(clean.data.readings(row))).collect();
+        let axes: Vec<_> = (0..COUNT).map(|row| clean.actual.forward_kinematics(clean.data.readings(row))).collect();
         move_rows_from(&mut data, 40, |row, place| {
             place + clean.device_from_base.rotation * axes[row].rotation * Vector3::new(0.001, 0.0, 0.0)
         });
@@ -112,9 +102,7 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
         });
         check("zero 0.2 deg", &data, EventKind::Zero, 41, 0.2, 0.02);
         let mut data = clean.data.clone();
-        move_rows_from(&mut data, 0, |row, place| {
-            place + Vector3::new(0.0, 1e-3 * row as f64 / COUNT as f64, 0.0)
-        });
+        move_rows_from(&mut data, 0, |row, place| place + Vector3::new(0.0, 1e-3 * row as f64 / COUNT as f64, 0.0));
         check("drift 1 mm", &data, EventKind::Drift, 1, 1.0, 0.15);
         println!("{}", lines.join("\n"));
     }
@@ -146,10 +134,7 @@ fn configurations_that_are_wrong_as_a_whole_are_left_out() {
     let (calibration, _) = calibrate_repaired(&clean.nominal, &data, &CalibrationOptions::default());
     let error = error_mm(&clean, &calibration, 0.0);
     let known: Vec<u32> = calibration.robustness.suspects().collect();
-    println!(
-        "clean {usual:.4} mm, with wrong configurations {error:.4} mm: {known:?} {:?}",
-        calibration.repairs
-    );
+    println!("clean {usual:.4} mm, with wrong configurations {error:.4} mm: {known:?} {:?}", calibration.repairs);
     assert_eq!(known, wrong.map(|row| row as u32));
     assert!(error < 1.25 * usual);
 }
@@ -216,10 +201,7 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
             let Some(before) = row.checked_sub(1).map(|row| made.data.readings(row)) else { return };
             let way: Vec<f64> = readings.iter().zip(before).map(|(own, before)| own - before).collect();
             let largest = way.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
-            readings
-                .iter_mut()
-                .zip(&way)
-                .for_each(|(own, way)| *own -= f64::to_radians(early_deg) * way / largest);
+            readings.iter_mut().zip(&way).for_each(|(own, way)| *own -= f64::to_radians(early_deg) * way / largest);
         });
         let (calibration, _) = calibrate_repaired(&made.nominal, &data, &CalibrationOptions::default());
         let said: Vec<&String> = calibration.warnings.iter().filter(|it| it.contains(EARLY)).collect();
@@ -255,9 +237,7 @@ fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
         let expected_mm = calibration.verdict.expected_error_mm.unwrap();
         // The truth concerns points of the tip, which no row shows exactly, so distances of pairs are compared.
         let error_mm = error_mm(&made, &calibration, 0.0);
-        println!(
-            "seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances"
-        );
+        println!("seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances");
         assert!(error_mm < 1.5 * expected_mm && expected_mm < 0.95 * left_mm);
     }
 }

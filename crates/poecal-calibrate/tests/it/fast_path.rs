@@ -10,9 +10,7 @@ use poecal_fit::problem::{Problem, Refit, SimdLevel, simd_levels, stated_level};
 use poecal_fit::state::{self as estimate, Estimate, PackedValues, nominal_estimate};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal_model::robot::{Robot, Term};
-use poecal_model::simulate::{
-    SessionKind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis,
-};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
 use poecal_numerics::solve::{LeastSquares, NormalEquations, Options, minimize};
 use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions::geometry;
@@ -121,9 +119,8 @@ impl Session {
         let home = |target: usize| robot.home * Pose::from_translation(Vector3::x() * (0.1 * target as f64));
         let mut estimate = Estimate::new(robot, (0..case.targets).map(home).collect(), made.device_from_base);
         data.stations = (0..=case.further).map(|station| Some(format!("s{station}"))).collect();
-        let moved = |station: usize| {
-            made.device_from_base * Pose::from_xyz_rpy([0.0, 0.1, 0.2], [0.1, station as f64, 0.0])
-        };
+        let moved =
+            |station: usize| made.device_from_base * Pose::from_xyz_rpy([0.0, 0.1, 0.2], [0.1, station as f64, 0.0]);
         estimate = estimate.with_further_devices((1..=case.further).map(moved).collect());
         let packed = PackedValues::from_dataset(robot, &data);
         let weights = (0..case.rows).map(|row| [1.0, 0.3, 0.0, 2.5][row % 4]).collect();
@@ -184,8 +181,7 @@ fn difference(fast: &NormalEquations, general: &NormalEquations) -> f64 {
         let of = |value: f64, scale: f64| if scale > 0.0 { value.abs() / scale } else { value.abs() };
         worst = larger_or_nan(worst, of(fast.gradient[a] - general.gradient[a], size(a) * length));
         for b in a..n {
-            worst =
-                larger_or_nan(worst, of(fast.gram[a * n + b] - general.gram[a * n + b], size(a) * size(b)));
+            worst = larger_or_nan(worst, of(fast.gram[a * n + b] - general.gram[a * n + b], size(a) * size(b)));
         }
     }
     assert_eq!(fast.residuals, general.residuals);
@@ -208,11 +204,9 @@ fn both_paths_agree() {
     for (name, robot) in robots() {
         let mut worst = (0.0, String::new());
         for kind in [SessionKind::POSE, SessionKind::POINT, SessionKind::MIXED] {
-            for case in choose_some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100)
-            {
+            for case in choose_some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
                 let session = Session::new(&robot, kind, case);
-                let general =
-                    reference::normal(&session.problem(case, SimdLevel::BASELINE), &session.estimate);
+                let general = reference::normal(&session.problem(case, SimdLevel::BASELINE), &session.estimate);
                 for level in simd_levels() {
                     let problem = session.problem(case, level);
                     let fast = problem.normal(&session.estimate);
@@ -251,9 +245,8 @@ fn sums_do_not_depend_on_threads() {
 #[test]
 fn few_passes_have_the_same_optimum() {
     let cases = [50, 50, 50, 500, 6000].into_iter().zip(1..);
-    for (kind, (count, seed)) in [SessionKind::POSE, SessionKind::POINT]
-        .into_iter()
-        .flat_map(|kind| cases.clone().map(move |case| (kind, case)))
+    for (kind, (count, seed)) in
+        [SessionKind::POSE, SessionKind::POINT].into_iter().flat_map(|kind| cases.clone().map(move |case| (kind, case)))
     {
         let simulation = Simulation { count, seed, ..Simulation::default() };
         let made = simulation.run(&elbow(), kind).unwrap();
@@ -299,8 +292,7 @@ fn kernels_serve_the_kinds_that_they_know() {
             session.free = vec![parameter];
             let problem = session.problem(&Case::default(), SimdLevel::BASELINE);
             println!("{seen:?} by {parameter:?}");
-            let (fast, by_rows) =
-                (problem.normal(&session.estimate), reference::normal(&problem, &session.estimate));
+            let (fast, by_rows) = (problem.normal(&session.estimate), reference::normal(&problem, &session.estimate));
             assert!(difference(&fast, &by_rows) < TOLERANCE);
         }
     }
@@ -315,8 +307,7 @@ fn refits_have_the_same_optimum() {
         let packed = PackedValues::new(&made.nominal, made.data.all_readings(), 6);
         let rows: Vec<u32> = made.data.all_rows();
         let free = parameters(&made.nominal, &made.data, &Case::default());
-        let first =
-            Problem::new(in_session(&made.nominal, &made.data, &packed), rows.clone(), free.clone(), NOISE);
+        let first = Problem::new(in_session(&made.nominal, &made.data, &packed), rows.clone(), free.clone(), NOISE);
         let start = nominal_estimate(&made.nominal, &made.data);
         let strict = Options { decrement: 1e-12, ..Options::default() };
         let (optimum, _, _) = minimize(&first, start.clone(), &strict);
@@ -379,9 +370,5 @@ impl LeastSquares for Plain<'_> {
 /// Largest distance between the positions that two estimates predict, metres.
 fn farthest_prediction(session: &estimate::Session<'_>, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
     let errors = |estimate| session.errors(rows, estimate);
-    errors(a)
-        .iter()
-        .zip(errors(b))
-        .map(|(a, b)| (a.position_m() - b.position_m()).norm())
-        .fold(0.0, larger_or_nan)
+    errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m() - b.position_m()).norm()).fold(0.0, larger_or_nan)
 }

@@ -19,11 +19,7 @@ fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
     for (count, options, held_out, few) in cases {
         let made = simulate_session(&elbow(), SessionKind::POSE, count, 3);
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
-        assert_eq!(
-            (found.held_out_rows.len(), found.accuracy.few_configurations),
-            (held_out, few),
-            "{count}"
-        );
+        assert_eq!((found.held_out_rows.len(), found.accuracy.few_configurations), (held_out, few), "{count}");
         assert_eq!(found.accuracy.held_out.map_or(0, |it| it.count), held_out);
     }
     let mut made = simulate_session(&elbow(), SessionKind::POSE, 38, 3);
@@ -35,8 +31,7 @@ fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
 /// Cross-validation predicts each row once, and reports separately the rows outside the range of the others.
 #[test]
 fn rows_beyond_the_range_of_the_others_are_reported_apart() {
-    let made =
-        Simulation { count: 200, seed: 8, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let made = Simulation { count: 200, seed: 8, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let value = |row: usize| made.data.readings(row)[1];
     let near = (0..200).filter(|&row| (value(row) - 0.6).abs() < 0.6).take(40);
     let far = (0..200).filter(|&row| (value(row) - 0.6).abs() > 2.0).take(1);

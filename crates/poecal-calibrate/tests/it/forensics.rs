@@ -33,8 +33,7 @@ const KINDS: [DiagnosisKind; 12] = [
 #[test]
 fn a_mistake_of_a_part_of_the_rows_is_named_with_these_rows() {
     for seed in trials(4).at_least(2).seeds() {
-        let made =
-            Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
         let changed = |is_of: fn(usize) -> bool| {
             let mut data = Dataset::new(made.data.reading_names().to_vec());
             for row in 0..made.data.len() {
@@ -149,9 +148,7 @@ fn couple_readings(session: &Session, column: usize, own: f64, factor: f64) -> D
 
 #[test]
 fn readings_that_are_sums_of_two_joints_are_named() {
-    for (seed, own, factor) in
-        choose_some([(0, 1.0, 1.0), (10, 1.0, -1.0), (20, -1.0, 1.0), (30, -1.0, -1.0)])
-    {
+    for (seed, own, factor) in choose_some([(0, 1.0, 1.0), (10, 1.0, -1.0), (20, -1.0, 1.0), (30, -1.0, -1.0)]) {
         let session = Session::from_seed(seed);
         let found = diagnose_session(&session, &couple_readings(&session, 2, own, factor));
         let kinds: Vec<_> = found.iter().map(|one| one.kind).collect();
@@ -194,8 +191,7 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
             && joints.iter().zip(&factors).all(|(joint, factor)| {
                 // The factor is determined with nominal screws, so only two of its digits are compared.
                 *factor == 1.0 || {
-                    let text =
-                        found[0].statement.split(&format!("{}: ", joint.name)).nth(1).unwrap_or_default();
+                    let text = found[0].statement.split(&format!("{}: ", joint.name)).nth(1).unwrap_or_default();
                     let number = text.split([',', ')']).next().and_then(|it| it.parse::<f64>().ok());
                     number.is_some_and(|it| (it * factor - 1.0).abs() < 0.05)
                 }
@@ -211,8 +207,7 @@ fn scale_readings(session: &Session, factors: &[f64]) -> Dataset {
     let mut data = Dataset::new(session.data.reading_names().to_vec());
     data.targets.clone_from(&session.data.targets);
     for row in 0..session.data.len() {
-        let readings: Vec<f64> =
-            session.data.readings(row).iter().zip(factors).map(|(it, by)| it * by).collect();
+        let readings: Vec<f64> = session.data.readings(row).iter().zip(factors).map(|(it, by)| it * by).collect();
         data.push_observation(&readings, session.data.observations[row]).unwrap();
     }
     data
@@ -237,10 +232,8 @@ fn check_and_calibrate_name_the_same_mistakes() {
         let (checked, calibrated) =
             (kinds(diagnose_session(&session, &data)), kinds(told_with_calibration(&session, &data)));
         if checked != calibrated || !checked.contains(&kind) {
-            different.push(format!(
-                "{kind:?} ({words}; {}): checked {checked:?}, calibrated {calibrated:?}",
-                session.words
-            ));
+            different
+                .push(format!("{kind:?} ({words}; {}): checked {checked:?}, calibrated {calibrated:?}", session.words));
         }
     }
     assert!(different.is_empty(), "{different:#?}");
@@ -249,8 +242,7 @@ fn check_and_calibrate_name_the_same_mistakes() {
 /// A session of an elbow whose rows see this number of targets in turn, with the sign of one joint wrong or not.
 fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
     let mut session = Session::from_seed(0);
-    let made =
-        Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
+    let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
     session.robot = made.nominal;
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
@@ -318,12 +310,10 @@ fn two_of_many_targets_exchanged_in_some_rows_are_named() {
 #[test]
 fn a_clean_calibration_has_no_mistake() {
     let simulation = poecal_model::simulate::Simulation::default();
-    let made =
-        simulation.run(&poecal_model::simulate::elbow(), poecal_model::simulate::SessionKind::POINT).unwrap();
+    let made = simulation.run(&poecal_model::simulate::elbow(), poecal_model::simulate::SessionKind::POINT).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let rows: Vec<u32> = made.data.all_rows();
-    let options =
-        DiagnosisOptions { calibrated: Some(&calibration.models.calibrated), ..DiagnosisOptions::default() };
+    let options = DiagnosisOptions { calibrated: Some(&calibration.models.calibrated), ..DiagnosisOptions::default() };
     assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
 }
 

@@ -8,8 +8,8 @@ use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::offsets::TaughtFrames;
 use poecal_model::robot::{Robot, Sizes};
 use poecal_model::simulate::{
-    SessionKind, Simulation, SimulationResult, elbow, gantry, random, random_chain, random_configuration,
-    scara, seven_axis,
+    SessionKind, Simulation, SimulationResult, elbow, gantry, random, random_chain, random_configuration, scara,
+    seven_axis,
 };
 use poecal_testing::largest::larger_or_nan;
 use poecal_testing::sessions as common;
@@ -154,8 +154,7 @@ fn session(robot: &Robot, targets: &[Target]) -> SimulationResult {
     for _ in 0..60 {
         let readings = random_configuration(robot, &mut generator);
         for (name, is_frame, tip_from_target) in targets {
-            let mut pose =
-                made.device_from_base * made.actual.forward_kinematics(&readings) * *tip_from_target;
+            let mut pose = made.device_from_base * made.actual.forward_kinematics(&readings) * *tip_from_target;
             pose.translation += random::normal_vector(&mut generator) * 5e-5;
             let measurement =
                 if *is_frame { Measurement::of_pose(&pose) } else { Measurement::point(pose.translation) };
@@ -172,11 +171,7 @@ fn calibrated_robot_predicts_what_the_estimate_predicts() {
     let cases: [&[Target]; 4] = [
         &[(None, true, shifted(0.0))],
         &[(None, false, shifted(0.1))],
-        &[
-            (Some("a"), false, shifted(0.0)),
-            (Some("b"), true, shifted(0.2)),
-            (Some("c"), false, shifted(-0.1)),
-        ],
+        &[(Some("a"), false, shifted(0.0)), (Some("b"), true, shifted(0.2)), (Some("c"), false, shifted(-0.1))],
         &[(None, true, shifted(0.0)), (Some("ball"), false, shifted(0.15))],
     ];
     for robot in [elbow(), gantry(), random_chain(7, 1)] {

@@ -12,13 +12,7 @@ use rand_core::SeedableRng;
 /// P1 to P5 in a diagonal plane of a cube of 0.6 m: the centre, and 10 % of the diagonal from four vertices.
 fn commands() -> Vec<Vector3<f64>> {
     let own = |x: f64, y: f64, z: f64| Vector3::new(0.9 + 0.24 * x, 0.24 * y, 0.6 + 0.24 * z);
-    vec![
-        own(0.0, 0.0, 0.0),
-        own(1.0, 1.0, 1.0),
-        own(-1.0, 1.0, 1.0),
-        own(-1.0, -1.0, -1.0),
-        own(1.0, -1.0, -1.0),
-    ]
+    vec![own(0.0, 0.0, 0.0), own(1.0, 1.0, 1.0), own(-1.0, 1.0, 1.0), own(-1.0, -1.0, -1.0), own(1.0, -1.0, -1.0)]
 }
 
 /// A robot with known characteristics, and a device.
@@ -88,9 +82,7 @@ impl Known {
     fn repeatability(&self, with_noise: bool, random: &mut ChaCha8Rng) -> f64 {
         let noise = if with_noise { self.noise_m } else { 0.0 };
         let lengths: Vec<f64> = (0..40_000)
-            .map(|_| {
-                (self.scatter.component_mul(&normal_vector(random)) + noise * normal_vector(random)).norm()
-            })
+            .map(|_| (self.scatter.component_mul(&normal_vector(random)) + noise * normal_vector(random)).norm())
             .collect();
         let mean = lengths.iter().sum::<f64>() / 4e4;
         mean + 3.0 * (lengths.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / 4e4).sqrt()
@@ -241,8 +233,7 @@ fn wrong_rows_are_named() {
     (exchanged[11].position_m, exchanged[13].position_m) = (rows[13].position_m, rows[11].position_m);
     let text = refusal(&exchanged);
     assert!(
-        text.contains("rows.csv:13: found the position of pose P4")
-            && text.ends_with("exchange it with rows.csv:15"),
+        text.contains("rows.csv:13: found the position of pose P4") && text.ends_with("exchange it with rows.csv:15"),
         "{text}"
     );
     let mut other = rows.clone();
@@ -250,11 +241,7 @@ fn wrong_rows_are_named() {
     assert!(refusal(&other).ends_with("of P2's others: correct its pose"), "{}", refusal(&other));
     let mut far = rows.clone();
     far[11].position_m.x += 0.02;
-    assert!(
-        refusal(&far).contains("mm from the other rows of pose P2, which scatter by"),
-        "{}",
-        refusal(&far)
-    );
+    assert!(refusal(&far).contains("mm from the other rows of pose P2, which scatter by"), "{}", refusal(&far));
     let mut doubled = rows.clone();
     doubled[16].labels.cycle = "3".to_owned();
     assert!(
@@ -269,11 +256,7 @@ fn wrong_rows_are_named() {
         "{}",
         refusal(&speeds)
     );
-    assert!(
-        refusal(&rows[..10]).contains("found 2 cycles of pose P1, expected 3 or more"),
-        "{}",
-        refusal(&rows[..10])
-    );
+    assert!(refusal(&rows[..10]).contains("found 2 cycles of pose P1, expected 3 or more"), "{}", refusal(&rows[..10]));
     let mut missing = rows.clone();
     missing.remove(52);
     let found = iso9283(&missing, None).unwrap();
@@ -292,8 +275,7 @@ fn wrong_rows_are_named() {
     });
     let text = refusal(&renamed.collect::<Vec<_>>());
     assert!(text.contains("from its command in the fitted frame"), "{text}");
-    let two: Vec<TestRow> =
-        rows.iter().filter(|it| ["P1", "P2"].contains(&it.labels.pose.as_str())).cloned().collect();
+    let two: Vec<TestRow> = rows.iter().filter(|it| ["P1", "P2"].contains(&it.labels.pose.as_str())).cloned().collect();
     assert!(refusal(&two).contains("found 2 poses from which no frame"), "{}", refusal(&two));
 }
 
@@ -369,12 +351,7 @@ impl Varied {
         Varied { known: Known { errors, turns, scatter, ..*known }, shifts, wider }
     }
 
-    fn rows(
-        &self,
-        cycles: usize,
-        label: fn(&mut TestLabels) -> &mut String,
-        random: &mut ChaCha8Rng,
-    ) -> Vec<TestRow> {
+    fn rows(&self, cycles: usize, label: fn(&mut TestLabels) -> &mut String, random: &mut ChaCha8Rng) -> Vec<TestRow> {
         let mut rows = self.known.rows(cycles, random);
         rows.iter_mut().for_each(|row| *label(&mut row.labels) = format!("{:.3}", self.wider));
         rows
@@ -395,8 +372,7 @@ fn intervals_of_variations_hold_as_often_as_they_say() {
         let known = Known::new(&mut random, accuracy_m);
         let cycles = 10 + (trial % 41) as usize;
         let mut rows = known.rows(cycles, &mut random);
-        let moved =
-            |size_m: f64, wider: f64, random: &mut ChaCha8Rng| Varied::new(&known, size_m, wider, random);
+        let moved = |size_m: f64, wider: f64, random: &mut ChaCha8Rng| Varied::new(&known, size_m, wider, random);
         let count = 1 + (trial / 2 % 2) as usize;
         let mut further = |label: fn(&mut TestLabels) -> &mut String, random: &mut ChaCha8Rng| {
             let all: Vec<Varied> = (0..count)
@@ -421,9 +397,7 @@ fn intervals_of_variations_hold_as_often_as_they_say() {
             let it = figure.measured;
             shares[at][usize::from(it.from == 0.0)].add(it.from, it.to, truth);
         };
-        for (at, (name, others)) in
-            [(FigureName::Vap, &approaches), (FigureName::E, &arms)].into_iter().enumerate()
-        {
+        for (at, (name, others)) in [(FigureName::Vap, &approaches), (FigureName::E, &arms)].into_iter().enumerate() {
             for (k, figure) in figures(&found, name, false).into_iter().enumerate() {
                 let mut all = vec![Vector3::zeros()];
                 all.extend(others.iter().map(|it| it.shifts[k]));
@@ -432,9 +406,8 @@ fn intervals_of_variations_hold_as_often_as_they_say() {
             }
         }
         let commands = commands();
-        let reached = |of: &Known| -> Vec<Vector3<f64>> {
-            commands.iter().zip(&of.errors).map(|(a, b)| a + b).collect()
-        };
+        let reached =
+            |of: &Known| -> Vec<Vector3<f64>> { commands.iter().zip(&of.errors).map(|(a, b)| a + b).collect() };
         let frame = if is_fitted { rigid_motion(&reached(&known), &commands) } else { Pose::identity() };
         let accuracy = |of: &Known, k: usize| (frame.act(&reached(of)[k]) - commands[k]).norm();
         for (k, figure) in figures(&found, FigureName::Dap, false).into_iter().enumerate() {
@@ -466,9 +439,8 @@ fn intervals_of_variations_hold_as_often_as_they_say() {
 
 /// True if a closed line goes around a point.
 fn is_inside(rim: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let crosses = |[a, b]: [[f64; 2]; 2]| {
-        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-    };
+    let crosses =
+        |[a, b]: [[f64; 2]; 2]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
     rim.windows(2).filter(|it| crosses([it[0], it[1]])).count() % 2 == 1
 }
 

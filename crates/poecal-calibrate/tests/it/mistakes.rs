@@ -8,9 +8,7 @@ use poecal_fit::forensics::{Diagnosis, DiagnosisKind};
 use poecal_model::measurement::{Dataset, Measurement, Observation};
 use poecal_model::robot::{JointKind, Robot};
 use poecal_model::simulate::random::{direction, shuffle, uniform_number};
-use poecal_model::simulate::{
-    self, Simulation, elbow, gantry, random_chain, random_configuration, scara, seven_axis,
-};
+use poecal_model::simulate::{self, Simulation, elbow, gantry, random_chain, random_configuration, scara, seven_axis};
 use poecal_testing::trials::Trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -77,20 +75,13 @@ impl Session {
             .iter()
             .map(|pose| *pose * Pose::exp(&poecal_testing::sessions::random_twist(0.02, 2e-3, g)))
             .collect();
-        let device = if device_free {
-            Pose::new(simulate::random::rotation(g), direction(g) * 3.0)
-        } else {
-            Pose::identity()
-        };
+        let device =
+            if device_free { Pose::new(simulate::random::rotation(g), direction(g) * 3.0) } else { Pose::identity() };
         let mut data = Dataset::new(robot.reading_names());
-        let waves: Vec<[f64; 2]> = robot
-            .reading_names()
-            .iter()
-            .map(|_| [draw_between(g, 0.15, 0.5), draw_between(g, 0.0, 6.3)])
-            .collect();
+        let waves: Vec<[f64; 2]> =
+            robot.reading_names().iter().map(|_| [draw_between(g, 0.15, 0.5), draw_between(g, 0.0, 6.3)]).collect();
         for row in 0..count {
-            let readings =
-                if smooth { on_path(&robot, &waves, row) } else { random_configuration(&robot, g) };
+            let readings = if smooth { on_path(&robot, &waves, row) } else { random_configuration(&robot, g) };
             let target = row % targets;
             let seen = device * actual.forward_kinematics(&readings) * placed[target];
             let position = seen.translation + simulate::random::normal_vector(g) * noise_m;
@@ -153,19 +144,14 @@ impl Session {
                 let factor = if uniform_number(g) < 0.5 { factor } else { 1.0 / factor };
                 let data = self.with_changed_rows(|_, readings, _| {
                     for (k, reading) in readings.iter_mut().enumerate() {
-                        *reading *=
-                            if k == column || all && kinds[k] == kinds[column] { factor } else { 1.0 };
+                        *reading *= if k == column || all && kinds[k] == kinds[column] { factor } else { 1.0 };
                     }
                 });
-                Some((
-                    data,
-                    format!("column {column}{} times {factor}", if all { " and its like" } else { "" }),
-                ))
+                Some((data, format!("column {column}{} times {factor}", if all { " and its like" } else { "" })))
             }
             DiagnosisKind::PositionUnit => {
                 let factor = [1e3, 1e-3, 1.0 / 0.0254, 1.0 / 25.4][pick(g, 4)];
-                let data =
-                    self.with_changed_poses(|pose| Pose::new(pose.rotation, pose.translation * factor));
+                let data = self.with_changed_poses(|pose| Pose::new(pose.rotation, pose.translation * factor));
                 Some((data, format!("times {factor}")))
             }
             DiagnosisKind::JointSign => {
@@ -179,11 +165,7 @@ impl Session {
                 Some((data, format!("columns {column} and {other}")))
             }
             DiagnosisKind::JointZero => {
-                let by = if slides {
-                    draw_between(g, 0.05, 0.3)
-                } else {
-                    draw_between(g, 8.0, 180.0).to_radians()
-                };
+                let by = if slides { draw_between(g, 0.05, 0.3) } else { draw_between(g, 8.0, 180.0).to_radians() };
                 let by = if uniform_number(g) < 0.5 { by } else { -by };
                 Some((
                     self.with_changed_rows(|_, readings, _| readings[column] += by),
@@ -194,21 +176,15 @@ impl Session {
                 let other = pick(g, n);
                 let fits = other != column && kinds[other] == kinds[column];
                 fits.then(|| {
-                    (
-                        self.with_changed_rows(|_, r, _| r.swap(column, other)),
-                        format!("columns {column}, {other}"),
-                    )
+                    (self.with_changed_rows(|_, r, _| r.swap(column, other)), format!("columns {column}, {other}"))
                 })
             }
             DiagnosisKind::QuaternionOrder => {
                 let wxyz_as_xyzw = uniform_number(g) < 0.5;
                 let reordered = |pose: Pose| {
                     let q = rotation::to_quaternion_xyzw(&pose.rotation);
-                    let q = if wxyz_as_xyzw {
-                        Vector4::new(q.w, q.x, q.y, q.z)
-                    } else {
-                        Vector4::new(q.y, q.z, q.w, q.x)
-                    };
+                    let q =
+                        if wxyz_as_xyzw { Vector4::new(q.w, q.x, q.y, q.z) } else { Vector4::new(q.y, q.z, q.w, q.x) };
                     Pose::new(rotation::from_quaternion_xyzw(&q), pose.translation)
                 };
                 poses.then(|| (self.with_changed_poses(reordered), format!("w first: {wxyz_as_xyzw}")))
@@ -216,11 +192,7 @@ impl Session {
             DiagnosisKind::InvertedPose => {
                 let whole = uniform_number(g) < 0.7;
                 let inverse = |pose: Pose| {
-                    if whole {
-                        pose.inverse()
-                    } else {
-                        Pose::new(pose.rotation.transpose(), pose.translation)
-                    }
+                    if whole { pose.inverse() } else { Pose::new(pose.rotation.transpose(), pose.translation) }
                 };
                 let data = self.with_changed_rows(|_, _, observation| {
                     if let Some(pose) = observation.measurement.frame() {
@@ -234,10 +206,7 @@ impl Session {
                 // The same convention twice: radians read as degrees.
                 let factor = if meant == read { 1f64.to_radians() } else { 1.0 };
                 let other = |pose: Pose| {
-                    Pose::new(
-                        from_angles(read, angles(meant, &pose.rotation).map(|a| a * factor)),
-                        pose.translation,
-                    )
+                    Pose::new(from_angles(read, angles(meant, &pose.rotation).map(|a| a * factor)), pose.translation)
                 };
                 poses.then(|| (self.with_changed_poses(other), format!("meant {meant}, read {read}")))
             }
@@ -262,9 +231,7 @@ impl Session {
                     let turned = if turns { mirror * pose.rotation * mirror } else { pose.rotation };
                     Pose::new(turned, mirror * pose.translation)
                 };
-                (!same).then(|| {
-                    (self.with_changed_poses(mirrored), format!("{words}, orientations too: {turns}"))
-                })
+                (!same).then(|| (self.with_changed_poses(mirrored), format!("{words}, orientations too: {turns}")))
             }
             DiagnosisKind::RowShift => {
                 let by = (1 + pick(g, 3)) * self.data.targets.len();
@@ -273,8 +240,7 @@ impl Session {
                 data.targets.clone_from(&self.data.targets);
                 for row in by..self.data.len() {
                     let (readings, seen) = if later { (row - by, row) } else { (row, row - by) };
-                    data.push_observation(self.data.readings(readings), self.data.observations[seen])
-                        .unwrap();
+                    data.push_observation(self.data.readings(readings), self.data.observations[seen]).unwrap();
                 }
                 Some((data, format!("by {by}, later: {later}")))
             }
@@ -289,9 +255,8 @@ impl Session {
                 let couples = column > 0 && !slides && kinds[column - 1] == JointKind::Revolute;
                 let factor = if uniform_number(g) < 0.5 { 1.0 } else { -1.0 };
                 couples.then(|| {
-                    let data = self.with_changed_rows(|_, readings, _| {
-                        readings[column] += factor * readings[column - 1]
-                    });
+                    let data =
+                        self.with_changed_rows(|_, readings, _| readings[column] += factor * readings[column - 1]);
                     (data, format!("column {column} by {factor} of the one before"))
                 })
             }
@@ -315,8 +280,7 @@ impl Session {
                     let (from, mut seen) = (order[k], self.data.observations[order[k]]);
                     if !exact {
                         let target = seen.target;
-                        let other =
-                            order[copies..].iter().find(|&&row| self.data.observations[row].target == target);
+                        let other = order[copies..].iter().find(|&&row| self.data.observations[row].target == target);
                         seen = self.data.observations[*other.unwrap()];
                     }
                     data.push_observation(self.data.readings(from), seen).unwrap();
@@ -346,11 +310,7 @@ impl Session {
             }
         });
         any.then(|| {
-            (
-                data,
-                ["in all rows".to_owned(), format!("from row {from} on"), format!("rows {single:?}")][how]
-                    .clone(),
-            )
+            (data, ["in all rows".to_owned(), format!("from row {from} on"), format!("rows {single:?}")][how].clone())
         })
     }
 }

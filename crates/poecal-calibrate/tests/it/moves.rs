@@ -70,11 +70,8 @@ fn a_device_moved_late_is_named_and_not_called_gross_rows() {
             assert!(says(&found, &words), "{kind:?} {count}: {}", describe_findings(&found));
             assert!(says(&found, "instrument"), "{}", describe_findings(&found));
             assert!(!says(&found, "outlier"), "{}", describe_findings(&found));
-            let far: f64 = found
-                .warnings
-                .iter()
-                .find_map(|it| it.split(&words).nth(1)?.split(' ').next()?.parse().ok())
-                .unwrap();
+            let far: f64 =
+                found.warnings.iter().find_map(|it| it.split(&words).nth(1)?.split(' ').next()?.parse().ok()).unwrap();
             assert!((far - 5.0).abs() < 0.2, "{far} mm");
             assert_eq!(found.verdict.level, Level::DoNotUse);
             assert!(found.verdict.reasons.iter().any(|reason| reason.contains(&words)));
@@ -89,10 +86,8 @@ fn a_device_moved_halfway_is_named_with_its_row() {
         let moved = Pose::from_xyz_rpy([2e-3, 1e-3, -2e-3], [3e-4, 0.0, -5e-4]);
         let data = move_device(&made, |row| if row < 100 { Pose::identity() } else { moved });
         let found = fit(&made.nominal, &data);
-        let row =
-            |it: &String| -> Option<usize> { it.split("from row ").nth(1)?.split(' ').next()?.parse().ok() };
-        let row =
-            found.warnings.iter().find_map(row).unwrap_or_else(|| panic!("{}", describe_findings(&found)));
+        let row = |it: &String| -> Option<usize> { it.split("from row ").nth(1)?.split(' ').next()?.parse().ok() };
+        let row = found.warnings.iter().find_map(row).unwrap_or_else(|| panic!("{}", describe_findings(&found)));
         assert!((99..=103).contains(&row), "{}", describe_findings(&found));
         assert_eq!(found.verdict.level, Level::DoNotUse);
     }
@@ -114,9 +109,7 @@ fn files_with_two_device_frames_are_named() {
     let far = Pose::from_xyz_rpy([1.2, -0.7, 0.3], [0.1, 0.2, 2.0]);
     let near = Pose::from_translation(Vector3::new(6e-3, 0.0, 3e-3));
     for kind in KINDS {
-        for (place, count, first) in
-            choose_some([(far, 120, 60), (far, 100, 75), (near, 120, 60), (near, 150, 100)])
-        {
+        for (place, count, first) in choose_some([(far, 120, 60), (far, 100, 75), (near, 120, 60), (near, 150, 100)]) {
             let made = session(&elbow(), kind, count, 5);
             let found = fit(&made.nominal, &two_files(&made, place, first));
             assert!(
@@ -125,11 +118,7 @@ fn files_with_two_device_frames_are_named() {
                 describe_findings(&found)
             );
             assert!(says(&found, "--device-frames per-file"), "{}", describe_findings(&found));
-            assert!(
-                !says(&found, "unit of the noise") && !says(&found, "outlier"),
-                "{}",
-                describe_findings(&found)
-            );
+            assert!(!says(&found, "unit of the noise") && !says(&found, "outlier"), "{}", describe_findings(&found));
             assert!(found.diagnosis.is_empty(), "{}", describe_findings(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse);
         }
@@ -147,8 +136,7 @@ fn a_device_moved_far_within_a_file_is_named() {
             let statement = found.warnings.iter().find(|it| it.contains("are in another device frame"));
             let statement =
                 statement.unwrap_or_else(|| panic!("{kind:?} {count} {from}: {}", describe_findings(&found)));
-            let row: usize =
-                statement.split("from row ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+            let row: usize = statement.split("from row ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
             // First fitted row after the motion.
             assert!((from + 1..from + 8).contains(&row), "{from}: {statement}");
             assert!(!says(&found, "wrong unit"), "{}", describe_findings(&found));
@@ -158,11 +146,7 @@ fn a_device_moved_far_within_a_file_is_named() {
 }
 
 /// Points of several targets on the arm, in turn.
-fn with_targets(
-    made: &SimulationResult,
-    names: &[&str],
-    knocked: impl Fn(usize, usize) -> Vector3<f64>,
-) -> Dataset {
+fn with_targets(made: &SimulationResult, names: &[&str], knocked: impl Fn(usize, usize) -> Vector3<f64>) -> Dataset {
     let mut data = made.data.clone();
     data.targets = names.iter().map(|name| Some((*name).to_owned())).collect();
     for (row, observation) in data.observations.iter_mut().enumerate() {
@@ -193,8 +177,8 @@ fn a_knocked_nest_is_named_with_target_and_row() {
             });
             let found = fit(&made.nominal, &data);
             let statement = found.warnings.iter().find(|it| it.contains("target `middle` is shifted"));
-            let statement = statement
-                .unwrap_or_else(|| panic!("{kind:?} {count} {share}: {}", describe_findings(&found)));
+            let statement =
+                statement.unwrap_or_else(|| panic!("{kind:?} {count} {share}: {}", describe_findings(&found)));
             let number = |after: &str| -> f64 {
                 statement.split(after).nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
             };
@@ -217,10 +201,8 @@ fn a_slow_drift_is_called_a_drift() {
             let data = move_device(&made, |row| shift(far * (row as f64 / (count - 1) as f64)));
             let found = fit(&made.nominal, &data);
             let statement = found.warnings.iter().find(|it| it.contains("the measurements drift by"));
-            let statement =
-                statement.unwrap_or_else(|| panic!("{kind:?} {count}: {}", describe_findings(&found)));
-            let size: f64 =
-                statement.split("drift by ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+            let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count}: {}", describe_findings(&found)));
+            let size: f64 = statement.split("drift by ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
             assert!((size - 0.2).abs() < 0.06, "{statement}");
             assert!(!says(&found, "moved"), "{}", describe_findings(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse, "{}", describe_findings(&found));
@@ -230,9 +212,7 @@ fn a_slow_drift_is_called_a_drift() {
 
 /// True if a change is named.
 fn is_doubted(found: &Calibration) -> bool {
-    ["moved", "drift", "knocked", "do not share", "another device frame"]
-        .iter()
-        .any(|words| says(found, words))
+    ["moved", "drift", "knocked", "do not share", "another device frame"].iter().any(|words| says(found, words))
 }
 
 #[test]
@@ -252,8 +232,7 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
                 _ => made.data.clone(),
             };
             let found = fit(&made.nominal, &data);
-            is_doubted(&found)
-                .then(|| format!("{seed} {} {kind:?} {count}: {}", robot.name, describe_findings(&found)))
+            is_doubted(&found).then(|| format!("{seed} {} {kind:?} {count}: {}", robot.name, describe_findings(&found)))
         })
         .collect();
     assert!(doubted.is_empty(), "{doubted:#?}");

@@ -33,8 +33,7 @@ const IDENTIFIED: [[f64; 6]; 6] = [
 /// The same table's last row: the point on the tool, m.
 const IDENTIFIED_POINT: [f64; 3] = [0.839_010_0, -0.005_030_0, 0.724_974_0];
 /// Iterations reported by lou2009 are 6 and 10; the step here is the same, in better coordinates.
-const ELBOW_ITERATIONS: [(SessionKind, usize, usize); 2] =
-    [(SessionKind::POSE, 30, 5), (SessionKind::POINT, 100, 7)];
+const ELBOW_ITERATIONS: [(SessionKind, usize, usize); 2] = [(SessionKind::POSE, 30, 5), (SessionKind::POINT, 100, 7)];
 
 /// Exact points of the elbow whose tool is displaced by this across the last axis, on which the nominal one lies: they hardly determine the axis, so
 /// that the prior biases it. lou2009 needs 10 iterations for its points.
@@ -119,15 +118,11 @@ fn exact_points_of_the_elbow_take_few_iterations_whatever_its_errors() {
         let mut actual = simulation.perturb(&nominal, &mut generator);
         actual.home.translation.z += TOOL_ERROR_M;
         let made = simulation.measure(&nominal, actual, SessionKind::POINT, &mut generator).unwrap();
-        let options =
-            CalibrationOptions { frame: DeviceFrameKnowledge::Base, held_out: Some(0.0), ..geometry() };
+        let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, held_out: Some(0.0), ..geometry() };
         let result = calibrate(&made.nominal, &made.data, &options).unwrap();
         let off_m = result.accuracy.training.calibrated.position_mm().max * 1e-3;
         let solver = &result.solver;
-        println!(
-            "seed {seed}: {} iterations ({:?}), left {off_m:.1e} m",
-            solver.iterations, solver.termination
-        );
+        println!("seed {seed}: {} iterations ({:?}), left {off_m:.1e} m", solver.iterations, solver.termination);
         assert!(solver.termination.is_success());
         assert!(off_m < HELD_OUT_M);
         solver.iterations
@@ -149,8 +144,7 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     let session = Session::new(robot, &made.data, &packed, false).with_length(robot.reach_m() / 3.0);
     let problem = Problem::new(session, (0..100).collect(), free, noise);
     let estimate = nominal_estimate(robot, &made.data);
-    let setup =
-        AnalysisSetup { session, rows: problem.rows(), estimate: &estimate, layout: problem.layout(), noise };
+    let setup = AnalysisSetup { session, rows: problem.rows(), estimate: &estimate, layout: problem.layout(), noise };
     // The residual at the start is not noise: the rank is that of the Jacobian itself.
     let found = identifiability(&setup, &problem.normal(&estimate).gram, 0.0);
     println!("rank {} of {}", found.rank, found.parameters);
@@ -167,9 +161,7 @@ fn robots_of_every_structure_are_recovered_from_anywhere() {
     }
     let cases: Vec<(&Robot, SessionKind)> = robots
         .iter()
-        .flat_map(|robot| {
-            [SessionKind::POSE, SessionKind::POINT, SessionKind::MIXED].map(|kind| (robot, kind))
-        })
+        .flat_map(|robot| [SessionKind::POSE, SessionKind::POINT, SessionKind::MIXED].map(|kind| (robot, kind)))
         .collect();
     let cases = choose_some(cases);
     let failures: Vec<String> = cases

@@ -36,10 +36,8 @@ fn draw_below(generator: &mut ChaCha8Rng, count: usize) -> usize {
 
 /// Effects of the robot that its model does not describe, in all rows, including those that judge.
 fn add_physical_effect(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
-    let kind = draw_one_of(
-        generator,
-        &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"],
-    );
+    let kind =
+        draw_one_of(generator, &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"]);
     let joint = draw_below(generator, 6);
     match kind {
         "gear" => {
@@ -47,16 +45,13 @@ fn add_physical_effect(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static
             rows.iter_mut().for_each(|row| row.readings[joint] *= factor);
         }
         "ripple" => {
-            let (size, times) = (
-                draw_one_of(generator, &[0.01f64, 0.03, 0.1]).to_radians(),
-                draw_one_of(generator, &[1.0, 2.0, 3.0]),
-            );
+            let (size, times) =
+                (draw_one_of(generator, &[0.01f64, 0.03, 0.1]).to_radians(), draw_one_of(generator, &[1.0, 2.0, 3.0]));
             rows.iter_mut().for_each(|row| row.readings[joint] += size * (times * row.readings[joint]).sin());
         }
         "backlash" => {
             let size = draw_one_of(generator, &[0.01f64, 0.03, 0.1]).to_radians();
-            rows.iter_mut()
-                .for_each(|row| row.readings[joint] += size * draw_one_of(generator, &[-1.0, 1.0]));
+            rows.iter_mut().for_each(|row| row.readings[joint] += size * draw_one_of(generator, &[-1.0, 1.0]));
         }
         "sag" => {
             let size = draw_one_of(generator, &[1e-4, 3e-4, 1e-3]);
@@ -69,9 +64,7 @@ fn add_physical_effect(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static
         }
         "rounded" => {
             let step = draw_one_of(generator, &[0.01f64, 0.1, 0.5]).to_radians();
-            rows.iter_mut()
-                .flat_map(|row| &mut row.readings)
-                .for_each(|value| *value = (*value / step).round() * step);
+            rows.iter_mut().flat_map(|row| &mut row.readings).for_each(|value| *value = (*value / step).round() * step);
         }
         _ => {}
     }
@@ -106,8 +99,7 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
     match kind {
         "cell" => {
             for _ in 0..draw_one_of(generator, &[1, 3, 10]) {
-                let (row, factor) =
-                    (draw_below(generator, count), draw_one_of(generator, &[1.01, -1.0, 10.0, 0.1]));
+                let (row, factor) = (draw_below(generator, count), draw_one_of(generator, &[1.01, -1.0, 10.0, 0.1]));
                 match draw_below(generator, 9) {
                     cell @ 0..6 => rows[row].readings[cell] *= factor,
                     cell => rows[row].place[cell - 6] *= factor,
@@ -163,13 +155,9 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
         }
         "few" => rows.truncate(draw_one_of(generator, &[12, 14, 16, 20, 30])),
         "zeros" => rows[first..last.min(first + 10)].iter_mut().for_each(|row| row.place = Vector3::zeros()),
-        "columns" => {
-            rows[first..last].iter_mut().for_each(|row| row.readings.swap(joint.min(4), joint.min(4) + 1))
-        }
+        "columns" => rows[first..last].iter_mut().for_each(|row| row.readings.swap(joint.min(4), joint.min(4) + 1)),
         "sign" => rows[first..last].iter_mut().for_each(|row| row.readings[joint] = -row.readings[joint]),
-        "moved" => {
-            rows[count * 4 / 5..].iter_mut().for_each(|row| row.place += Vector3::new(0.0, 3e-3, 4e-3))
-        }
+        "moved" => rows[count * 4 / 5..].iter_mut().for_each(|row| row.place += Vector3::new(0.0, 3e-3, 4e-3)),
         _ => {}
     }
     kind

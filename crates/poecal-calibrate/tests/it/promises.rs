@@ -7,9 +7,7 @@ use poecal_fit::state::{Linkage, PackedValues, RowChain};
 use poecal_fit::uncertainty::Attribution;
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Noise, Quantity};
 use poecal_model::robot::{Joint, Robot};
-use poecal_model::simulate::{
-    SessionKind, Simulation, SimulationResult, elbow, random, random_configuration,
-};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, random, random_configuration};
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -125,12 +123,7 @@ fn harmonics(seed: u64, size_rad: f64) -> impl Fn(&[f64]) -> Vec<f64> {
 }
 
 /// The session measured again with the real joint values of `real`.
-fn measure_again(
-    made: &SimulationResult,
-    kind: SessionKind,
-    seed: u64,
-    real: &impl Fn(&[f64]) -> Vec<f64>,
-) -> Dataset {
+fn measure_again(made: &SimulationResult, kind: SessionKind, seed: u64, real: &impl Fn(&[f64]) -> Vec<f64>) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x5e);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in 0..made.data.len() {
@@ -192,8 +185,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
         for row in 0..made.data.len() {
             noise = 0.9 * noise + (1.0 - 0.81f64).sqrt() * NOISE_M * random::normal_vector(&mut generator);
             let readings = made.data.readings(row);
-            let position =
-                (made.device_from_base * made.actual.forward_kinematics(readings)).translation + noise;
+            let position = (made.device_from_base * made.actual.forward_kinematics(readings)).translation + noise;
             data.push(readings, None, Measurement::point(position)).unwrap();
         }
         let options = CalibrationOptions {
@@ -236,8 +228,7 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
         for row in (0..14).flat_map(|row| [row; 6]) {
             let readings = made.data.readings(row);
             let seen = made.device_from_base * made.actual.forward_kinematics(&real(readings));
-            let jitter: Vec<f64> =
-                readings.iter().map(|it| it + 1e-5 * random::normal(&mut generator)).collect();
+            let jitter: Vec<f64> = readings.iter().map(|it| it + 1e-5 * random::normal(&mut generator)).collect();
             data.push(&jitter, None, draw_measurement(&seen, SessionKind::POSE, &mut generator)).unwrap();
         }
         let found = calibrate(&made.nominal, &data, &options_with_all_rows()).unwrap();
@@ -248,15 +239,8 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
     }
     let (inside, _) = coverage(&all);
     let ratio = (found_squares / promised).sqrt();
-    println!(
-        "{:.1} % inside, found {ratio:.2} of what was expected, in {} sessions",
-        100.0 * inside,
-        sessions.count
-    );
-    assert!(
-        inside > 0.9 - sessions.tolerance_factor(OF_ONE_SESSION)
-            && ratio < 1.2 + sessions.tolerance_factor(0.3)
-    );
+    println!("{:.1} % inside, found {ratio:.2} of what was expected, in {} sessions", 100.0 * inside, sessions.count);
+    assert!(inside > 0.9 - sessions.tolerance_factor(OF_ONE_SESSION) && ratio < 1.2 + sessions.tolerance_factor(0.3));
 }
 
 /// Repeated measurements that scatter as much as the others show that the residuals are noise; without them the residuals count as errors of the
@@ -308,8 +292,7 @@ fn copied_rows_are_no_rows() {
 fn joints_of_one_reading_are_drawn_together() {
     let mut robot = elbow();
     let leader: Joint = robot.joints[1].clone();
-    robot.joints[2].reading =
-        poecal_model::robot::Reading { name: leader.name.clone(), multiplier: -0.9, offset: 0.1 };
+    robot.joints[2].reading = poecal_model::robot::Reading { name: leader.name.clone(), multiplier: -0.9, offset: 0.1 };
     let robot = Robot::new("coupled", robot.joints.clone(), robot.home).unwrap();
     let simulation = Simulation {
         count: 120,

@@ -31,8 +31,7 @@ fn unseen_m(simulation: &Simulation, made: &SimulationResult, found: &Calibratio
     let rms = |robot: &Robot, estimate| {
         let packed = PackedValues::from_dataset(robot, &unseen);
         let session = Session::new(robot, &unseen, &packed, true);
-        let squares =
-            session.errors(&unseen.all_rows(), estimate).into_iter().map(|it| it.position_m().norm_squared());
+        let squares = session.errors(&unseen.all_rows(), estimate).into_iter().map(|it| it.position_m().norm_squared());
         (squares.sum::<f64>() / unseen.len() as f64).sqrt()
     };
     let corrected = found.correction.as_deref().filter(|it| it.has_terms());
@@ -134,10 +133,8 @@ fn what_no_row_sees_is_in_no_bound_of_lengths() {
             // No measurement separates noise from errors of the model here.
             let noise_m2 = 3.0 * simulation.noise_position_m.powi(2);
             found += apart_m(&predicted, &actual, grows).powi(2) + noise_m2;
-            let size = calibration
-                .warnings
-                .iter()
-                .any(|it| it.contains("the size of the robot shows in no measurement"));
+            let size =
+                calibration.warnings.iter().any(|it| it.contains("the size of the robot shows in no measurement"));
             assert_eq!(size, grows, "{:?}", calibration.warnings);
         }
         let ratio = (expected / found).sqrt();

@@ -62,19 +62,10 @@ const SESSIONS: [Session; 11] = [
         targets: POSE,
         robots: |_| elbow(),
         configure: |robot, row, generator| {
-            if row % 2 == 0 {
-                one_orientation(robot, generator)
-            } else {
-                draw_anywhere(robot, row, generator)
-            }
+            if row % 2 == 0 { one_orientation(robot, generator) } else { draw_anywhere(robot, row, generator) }
         },
     },
-    Session {
-        name: "poses of one orientation, sliding",
-        targets: POSE,
-        robots: |_| gantry(),
-        configure: wrist_still,
-    },
+    Session { name: "poses of one orientation, sliding", targets: POSE, robots: |_| gantry(), configure: wrist_still },
     Session {
         name: "points of one orientation, sliding",
         targets: POINT,
@@ -82,12 +73,7 @@ const SESSIONS: [Session; 11] = [
         configure: wrist_still,
     },
     Session { name: "poses in a small volume", targets: POSE, robots: |_| elbow(), configure: small_volume },
-    Session {
-        name: "points in a small volume",
-        targets: POINT,
-        robots: |_| elbow(),
-        configure: small_volume,
-    },
+    Session { name: "points in a small volume", targets: POINT, robots: |_| elbow(), configure: small_volume },
     Session {
         name: "points in a small volume, seven axes",
         targets: POINT,
@@ -113,9 +99,8 @@ fn draw_anywhere(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64
 /// Within 0.15 rad of one bent configuration: the tip stays in a volume of some 0.3 m.
 fn small_volume(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64> {
     let middle = [0.4, 0.5, -0.6, 0.8, 1.0, -0.5, 0.3];
-    let around = |value: f64, generator: &mut ChaCha8Rng| {
-        value + 0.15 * (2.0 * random::uniform_number(generator) - 1.0)
-    };
+    let around =
+        |value: f64, generator: &mut ChaCha8Rng| value + 0.15 * (2.0 * random::uniform_number(generator) - 1.0);
     middle.iter().take(robot.joints.len()).map(|&value| around(value, generator)).collect()
 }
 

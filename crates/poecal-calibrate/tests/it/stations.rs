@@ -6,9 +6,7 @@ use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, ca
 use poecal_fit::state::{PackedValues, Session};
 use poecal_model::measurement::{Dataset, Measurement, Quantity, Set};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{
-    SessionKind, Simulation, SimulationResult, elbow, gantry, random, scara, seven_axis,
-};
+use poecal_model::simulate::{SessionKind, Simulation, SimulationResult, elbow, gantry, random, scara, seven_axis};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 
@@ -20,11 +18,7 @@ fn station_pose(station: usize) -> Pose {
 /// The measurement as the device sees it from another pose.
 fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
     let pose = *place * measurement.pose();
-    if measurement.sees_orientation() {
-        Measurement::of_pose(&pose)
-    } else {
-        Measurement::point(pose.translation)
-    }
+    if measurement.sees_orientation() { Measurement::of_pose(&pose) } else { Measurement::point(pose.translation) }
 }
 
 /// The rows of a session distributed over several stations.
@@ -51,12 +45,7 @@ fn fit(robot: &Robot, data: &Dataset) -> Calibration {
 }
 
 /// Root mean square distance from the truth in configurations that no fit saw, metres, in the first station's frame.
-fn unseen_m(
-    simulation: &Simulation,
-    made: &SimulationResult,
-    kind: SessionKind,
-    calibration: &Calibration,
-) -> f64 {
+fn unseen_m(simulation: &Simulation, made: &SimulationResult, kind: SessionKind, calibration: &Calibration) -> f64 {
     let unseen = simulation.held_out(made, kind, 300).unwrap();
     let packed = PackedValues::from_dataset(&made.nominal, &unseen);
     let session = Session::new(&made.nominal, &unseen, &packed, true);
@@ -83,20 +72,12 @@ fn several_places_calibrate_as_one_does() {
             let apart = found.stations[1].base_from_device.inverse() * found.stations[0].base_from_device;
             let off = apart.inverse() * station_pose(1);
             let angle = rotation::log(&off.rotation).norm();
-            assert!(
-                off.translation.norm() < 1e-3 && angle < 1e-3,
-                "{} m, {angle} rad",
-                off.translation.norm()
-            );
+            assert!(off.translation.norm() < 1e-3 && angle < 1e-3, "{} m, {angle} rad", off.translation.norm());
             assert!(found.warnings.is_empty(), "{:?}", found.warnings);
             assert_eq!(found.verdict.level, alone.verdict.level, "{:?}", found.verdict);
         }
         let ratio = (two / one).sqrt();
-        println!(
-            "{} {kind:?}: {:.4} mm, with two places {ratio:.2} times",
-            robot.name,
-            (one / 4.0).sqrt() * 1e3
-        );
+        println!("{} {kind:?}: {:.4} mm, with two places {ratio:.2} times", robot.name, (one / 4.0).sqrt() * 1e3);
         // Six more unknowns take some of the numbers, no more.
         assert!(ratio < 1.3, "{ratio}");
     }
@@ -106,12 +87,8 @@ fn several_places_calibrate_as_one_does() {
 fn exact_measurements_from_three_places_leave_nothing() {
     for robot in [elbow(), scara(), gantry()] {
         for kind in [SessionKind::POSE, SessionKind::POINT] {
-            let exact = Simulation {
-                count: 90,
-                noise_position_m: 0.0,
-                noise_rotation_rad: 0.0,
-                ..Simulation::default()
-            };
+            let exact =
+                Simulation { count: 90, noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
             let made = exact.run(&robot, kind).unwrap();
             let found = fit(&robot, &deal_out_rows(&made, 3));
             let worst = found.accuracy.training.calibrated.position_mm().max;
@@ -235,8 +212,7 @@ fn the_noise_of_each_instrument_is_found() {
     let mut data = deal_out_rows(&made, 2);
     let mut generator = ChaCha8Rng::seed_from_u64(3);
     // The second one is ten times noisier in position, three times in rotation.
-    let [position_m, rotation_rad] =
-        [10.0 * simulation.noise_position_m, 3.0 * simulation.noise_rotation_rad];
+    let [position_m, rotation_rad] = [10.0 * simulation.noise_position_m, 3.0 * simulation.noise_rotation_rad];
     for observation in data.observations.iter_mut().filter(|it| it.station == 1) {
         let seen = observation.measurement.pose();
         let turn = rotation::exp(&(random::normal_vector(&mut generator) * rotation_rad));

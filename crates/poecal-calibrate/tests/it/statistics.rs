@@ -44,13 +44,7 @@ fn parameters(robot: &Robot, kind: SessionKind) -> Vec<Parameter> {
 }
 
 /// The least mean squares of prediction errors that any unbiased estimator can have: `tr(J_h N⁻¹ J_hᵀ)` at the truth.
-fn bound(
-    truth: &Estimate,
-    data: &Dataset,
-    unseen: &PackedValues,
-    robot: &Robot,
-    kind: SessionKind,
-) -> Squares {
+fn bound(truth: &Estimate, data: &Dataset, unseen: &PackedValues, robot: &Robot, kind: SessionKind) -> Squares {
     let packed = PackedValues::new(robot, data.all_readings(), robot.joints.len());
     let session = Session::new(robot, data, &packed, false).with_length(LENGTH_M);
     let rows = (0..FITTED as u32).collect();
@@ -120,14 +114,10 @@ fn run(kind: SessionKind, seed: u64) -> (Squares, Squares) {
     let options = CalibrationOptions { held_out: Some(0.0), tolerance: None, ..Default::default() };
     let result = calibrate(&made.nominal, &made.data, &options).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xabcd);
-    let readings: Vec<f64> =
-        (0..PREDICTED).flat_map(|_| random_configuration(&made.nominal, &mut generator)).collect();
+    let readings: Vec<f64> = (0..PREDICTED).flat_map(|_| random_configuration(&made.nominal, &mut generator)).collect();
     let unseen = PackedValues::new(&made.nominal, &readings, made.nominal.joints.len());
     let truth = truth(&made);
-    (
-        difference(&result.models.calibrated, &truth, &unseen),
-        bound(&truth, &made.data, &unseen, &made.actual, kind),
-    )
+    (difference(&result.models.calibrated, &truth, &unseen), bound(&truth, &made.data, &unseen, &made.actual, kind))
 }
 
 /// Compares root mean squares over all runs, in millionths.

@@ -6,9 +6,7 @@ use poecal_calibrate::calibrate;
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::{JointKind, Robot, Sizes};
-use poecal_model::simulate::{
-    SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
-};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -58,13 +56,11 @@ fn a_bad_transmission_is_named() {
             };
             let found: Vec<_> = (seeds.clone())
                 .into_par_iter()
-                .map(|seed| {
-                    name_suspects(&robot, &with_bad_transmission(&robot, joint, amplitude, 40 + seed))
-                })
+                .map(|seed| name_suspects(&robot, &with_bad_transmission(&robot, joint, amplitude, 40 + seed)))
                 .collect();
-            let hits = found.iter().filter(|it| {
-                it.iter().any(|(named, words)| *named == joint && words.contains("follow its position"))
-            });
+            let hits = found
+                .iter()
+                .filter(|it| it.iter().any(|(named, words)| *named == joint && words.contains("follow its position")));
             let hits = hits.count();
             println!("{:12} {:12} {hits} of {seeds:?}: {:?}", robot.name, robot.joints[joint].name, found[0]);
             right += hits;
@@ -202,9 +198,7 @@ fn the_joint_that_is_off_is_named() {
     let sound: Vec<_> = trials.seeds().into_par_iter().map(|seed| judged(seed, Fault::Nothing)).collect();
     let alarms = sound.iter().filter(|(_, named)| !named.is_empty()).count();
     let count = found.len();
-    println!(
-        "{right} of {count} faults named, {alone} alone, {both} with another; {alarms} sound robots suspected"
-    );
+    println!("{right} of {count} faults named, {alone} alone, {both} with another; {alarms} sound robots suspected");
     let share = |allowed: f64| (allowed + trials.more_of_a_share(allowed)) * count as f64;
     assert!((count - right) as f64 <= share(0.03));
     assert!(both as f64 <= share(0.2));

@@ -6,9 +6,7 @@ use poecal_calibrate::{CalibrationOptions, JointCorrection, calibrate};
 use poecal_fit::state::{Linkage, PackedValues, RowChain};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::{Robot, Tolerance};
-use poecal_model::simulate::{
-    SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
-};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use poecal_testing::sessions::{geometry, with_threads};
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -48,15 +46,13 @@ fn tally_session(robot: &Robot, kind: SessionKind, seed: u64) -> Tally {
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     let uncertainty = found.trust.uncertainty.unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x7a11);
-    let readings: Vec<f64> =
-        (0..PREDICTIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
+    let readings: Vec<f64> = (0..PREDICTIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
     let packed = PackedValues::new(robot, &readings, robot.joints.len());
     let linkage = Linkage::new(&uncertainty.estimate);
     let mut chain = RowChain::default();
     let mut tally = Tally {
         claimed: uncertainty.discrepancy.scatter > 1.0
-            || uncertainty.discrepancy.standard_deviation[poecal_model::measurement::Quantity::Position]
-                > 0.0,
+            || uncertainty.discrepancy.standard_deviation[poecal_model::measurement::Quantity::Position] > 0.0,
         ..Tally::default()
     };
     for (row, expected) in uncertainty.predictions(&packed, 0).into_iter().enumerate() {
@@ -77,8 +73,7 @@ fn tally_session(robot: &Robot, kind: SessionKind, seed: u64) -> Tally {
         }
         tally.bounded += usize::from(shift.norm() < expected.bound_position_m());
         tally.predictions += 1;
-        tally.nees +=
-            1.0 / PREDICTIONS as f64 * shift.dot(&expected.position.cholesky().unwrap().solve(&shift));
+        tally.nees += 1.0 / PREDICTIONS as f64 * shift.dot(&expected.position.cholesky().unwrap().solve(&shift));
     }
     tally
 }
@@ -111,12 +106,9 @@ fn stated_intervals_hold() {
             claims += tallies.iter().filter(|it| it.claimed).count();
         }
     }
-    let (components, distances) =
-        (all.inside as f64 / all.of as f64, all.bounded as f64 / all.predictions as f64);
+    let (components, distances) = (all.inside as f64 / all.of as f64, all.bounded as f64 / all.predictions as f64);
     let nees = all.nees / fits as f64;
-    println!(
-        "{fits} fits: {components:.4}, {distances:.4}, NEES {nees:.3}, {claims} with errors beyond noise"
-    );
+    println!("{fits} fits: {components:.4}, {distances:.4}, NEES {nees:.3}, {claims} with errors beyond noise");
     // Errors of predictions of one fit are correlated: its share is 1 for most fits, and small for some.
     let near = 0.02 + trials.tolerance_factor(0.1);
     assert!((components - 0.95).abs() < near && (distances - 0.95).abs() < near);
@@ -149,8 +141,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
         };
         let mut data = poecal_model::measurement::Dataset::new(robot.reading_names());
         for row in 0..made.data.len() {
-            let position =
-                made.data.observations[row].measurement.pose().translation + sag(made.data.readings(row));
+            let position = made.data.observations[row].measurement.pose().translation + sag(made.data.readings(row));
             let point = poecal_model::measurement::Measurement::point(position);
             data.push(made.data.readings(row), None, point).unwrap();
         }
@@ -186,9 +177,8 @@ fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
     let sessions = trials(10);
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
         for seed in sessions.seeds() {
-            let made = Simulation { count: 200, seed, ..Simulation::default() }
-                .run(&robot, SessionKind::POINT)
-                .unwrap();
+            let made =
+                Simulation { count: 200, seed, ..Simulation::default() }.run(&robot, SessionKind::POINT).unwrap();
             let found = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
             let bootstrap = found.trust.bootstrap.unwrap();
             ratios.push(bootstrap.sigma_m / bootstrap.formal_sigma_m);
@@ -213,8 +203,7 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
         let near = random_configuration(&robot, &mut generator);
         let shared = random::normal_vector(&mut generator) * 2e-4;
         for _ in 0..6 {
-            let readings: Vec<f64> =
-                near.iter().map(|value| value + 1e-2 * random::normal(&mut generator)).collect();
+            let readings: Vec<f64> = near.iter().map(|value| value + 1e-2 * random::normal(&mut generator)).collect();
             let seen = actual.forward_kinematics(&readings).translation;
             let position = seen + shared + random::normal_vector(&mut generator) * 2e-5;
             let point = poecal_model::measurement::Measurement::point(position);
@@ -234,9 +223,8 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
 fn least_shares(robot: &Robot, data: &Dataset, tolerance: Option<Tolerance>) -> [Option<f64>; 2] {
     let options = CalibrationOptions { tolerance, ..geometry() };
     let found = calibrate(robot, data, &options).unwrap();
-    let least = |of: fn(&JointCorrection) -> Option<f64>| {
-        found.trust.joints.iter().filter_map(of).min_by(f64::total_cmp)
-    };
+    let least =
+        |of: fn(&JointCorrection) -> Option<f64>| found.trust.joints.iter().filter_map(of).min_by(f64::total_cmp);
     [least(|it| it.tilt_from_data), least(|it| it.shift_from_data)]
 }
 
@@ -247,11 +235,9 @@ fn what_the_data_said_and_what_the_tolerance_said_are_told_apart() {
     let tolerance = |angle_rad, length_m| Some(Tolerance { angle_rad, length_m });
     let points = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let of = |data: &Dataset, tolerance| least_shares(&points.nominal, data, tolerance);
-    let (usual, tight) =
-        (of(&points.data, Tolerance::default().into()), of(&points.data, tolerance(1e-7, 1e-7)));
+    let (usual, tight) = (of(&points.data, Tolerance::default().into()), of(&points.data, tolerance(1e-7, 1e-7)));
     let none = of(&points.data, None);
-    let planes =
-        Simulation { count: 120, ..Simulation::default() }.run(&elbow(), SessionKind::PLANE).unwrap();
+    let planes = Simulation { count: 120, ..Simulation::default() }.run(&elbow(), SessionKind::PLANE).unwrap();
     let touched = of(&planes.data, Tolerance::default().into());
     println!("poses: {usual:?}, tight {tight:?}, none {none:?}; touched planes {touched:?}");
     assert!(usual.iter().all(|share| share.unwrap() > 0.99));

@@ -6,9 +6,7 @@ use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, Le
 use poecal_fit::forensics::DiagnosisKind;
 use poecal_model::measurement::{Dataset, Measurement, Noise, Set};
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{
-    GrossErrors, SessionKind, Simulation, SimulationResult, elbow, scara, seven_axis,
-};
+use poecal_model::simulate::{GrossErrors, SessionKind, Simulation, SimulationResult, elbow, scara, seven_axis};
 use poecal_testing::sessions::{calibrate_session as fit, geometry, simulate_session};
 use poecal_testing::trials::{choose_some, trials};
 use rayon::prelude::*;
@@ -183,8 +181,7 @@ fn what_is_not_this_robot_is_not_to_be_used() {
     let mut other = elbow();
     for (k, joint) in other.joints.iter_mut().enumerate() {
         let away = 0.15 * Vector3::new((k as f64).sin(), (2.0 * k as f64).cos(), 0.3);
-        let turn =
-            rotation::exp(&(Vector3::new(1.0, 2.0, 0.5).normalize() * if k % 2 == 0 { 1.5 } else { 0.0 }));
+        let turn = rotation::exp(&(Vector3::new(1.0, 2.0, 0.5).normalize() * if k % 2 == 0 { 1.5 } else { 0.0 }));
         let motion = Pose::new(turn, joint.frame.translation + away - turn * joint.frame.translation);
         joint.screw = joint.screw.transform(&motion);
         joint.frame = motion * joint.frame;

@@ -2,15 +2,12 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_arm::lie::Pose;
-use poecal_calibrate::{
-    BlockChoice, Calibration, CalibrationOptions, Expectations, Gain, Level, Verdict, calibrate,
-};
+use poecal_calibrate::{BlockChoice, Calibration, CalibrationOptions, Expectations, Gain, Level, Verdict, calibrate};
 use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain};
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Quantity};
 use poecal_model::robot::{Robot, Sizes, TermGroup};
 use poecal_model::simulate::{
-    PictureSimulation, SessionKind, Simulation, SimulationResult, elbow, random, random_configuration,
-    seven_axis,
+    PictureSimulation, SessionKind, Simulation, SimulationResult, elbow, random, random_configuration, seven_axis,
 };
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
@@ -101,8 +98,7 @@ fn photograph_session(seed: u64) -> Truth {
     };
     let made = PictureSimulation::with_usual_camera(session, false).run(&elbow()).unwrap();
     let (camera_from_base, actual, held) = (made.base_from_other.inverse(), made.actual, made.tip_from_held);
-    let at =
-        move |readings: &[f64]| (camera_from_base * actual.forward_kinematics(readings) * held).translation;
+    let at = move |readings: &[f64]| (camera_from_base * actual.forward_kinematics(readings) * held).translation;
     let options = CalibrationOptions::default();
     Truth { nominal: made.nominal, data: made.data, options, noise_m2: 0.0, at: Box::new(at) }
 }
@@ -155,10 +151,7 @@ fn draw_inside(data: &Dataset, seed: u64) -> Vec<Vec<f64>> {
     };
     let ranges: Vec<(f64, f64)> = (0..rows[0].len()).map(range).collect();
     let draw = |generator: &mut ChaCha8Rng| {
-        ranges
-            .iter()
-            .map(|(least, most)| least + (most - least) * random::uniform_number(generator))
-            .collect()
+        ranges.iter().map(|(least, most)| least + (most - least) * random::uniform_number(generator)).collect()
     };
     (0..JUDGED).map(|_| draw(&mut generator)).collect()
 }
@@ -179,15 +172,11 @@ impl Trial {
         let measured: Vec<Vec<f64>> =
             found.fit_rows.iter().map(|&row| truth.data.readings(row as usize).to_vec()).collect();
         let inside = draw_inside(&truth.data, seed);
-        let own =
-            |readings: &[Vec<f64>]| rms_m(truth, (robot, &estimate), readings).hypot(truth.noise_m2.sqrt());
+        let own = |readings: &[Vec<f64>]| rms_m(truth, (robot, &estimate), readings).hypot(truth.noise_m2.sqrt());
         let nominal = nominal_m(truth, &found.models.registered, &inside).hypot(truth.noise_m2.sqrt());
         let (delivered, at_measured) = (own(&inside), own(&measured));
         Trial {
-            ratios: [
-                expected.measured.unwrap().sigma_m / at_measured,
-                expected.sampled.unwrap().sigma_m / delivered,
-            ],
+            ratios: [expected.measured.unwrap().sigma_m / at_measured, expected.sampled.unwrap().sigma_m / delivered],
             inside_mm: [1e3 * nominal, 1e3 * delivered],
             level: found.verdict.level,
             gain: found.verdict.gain,
@@ -215,10 +204,8 @@ fn summarize_ratios(mut ratios: Vec<f64>) -> (f64, f64) {
 fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
     let sessions = trials(200);
     for (name, of) in [("tracker", track_session as fn(u64) -> Truth), ("pictures", photograph_session)] {
-        let all: Vec<Trial> =
-            sessions.seeds().into_par_iter().map(|seed| Trial::from_truth(&of(seed), seed)).collect();
-        let [measured, inside] =
-            [0, 1].map(|k| summarize_ratios(all.iter().map(|it| it.ratios[k]).collect()));
+        let all: Vec<Trial> = sessions.seeds().into_par_iter().map(|seed| Trial::from_truth(&of(seed), seed)).collect();
+        let [measured, inside] = [0, 1].map(|k| summarize_ratios(all.iter().map(|it| it.ratios[k]).collect()));
         let gains = all.iter().filter(|it| it.is_gain()).count();
         let recommended = all.iter().filter(|it| it.is_gain() && it.is_recommended()).count();
         let losses = all.iter().filter(|it| !it.is_gain() && it.is_recommended()).count();
@@ -260,8 +247,7 @@ fn calibrate_again(seed: u64, changed: impl Fn(Robot) -> Robot) -> Calibration {
     let first = session.run(&elbow(), SessionKind::POINT).unwrap();
     let options = CalibrationOptions::default();
     let calibrated = calibrate(&first.nominal, &first.data, &options).unwrap().robot;
-    let second =
-        session.measure(&calibrated, changed(first.actual), SessionKind::POINT, &mut generator).unwrap();
+    let second = session.measure(&calibrated, changed(first.actual), SessionKind::POINT, &mut generator).unwrap();
     calibrate(&second.nominal, &second.data, &options).unwrap()
 }
 

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use poecal_calibrate::{
-    AcceptanceLimit, AcceptedModel, Corrections, DeviceFrameKnowledge, Level, RepairLimit, Repairs,
-    RobustLoss,
+    AcceptanceLimit, AcceptedModel, Corrections, DeviceFrameKnowledge, Level, RepairLimit, Repairs, RobustLoss,
 };
 use poecal_lou2009::{Method, PaperFormulation, PaperResidual};
 use poecal_model::robot::GravityDirection;
@@ -146,11 +145,7 @@ pub(crate) struct Calibrate {
 impl Calibrate {
     /// Treatment of existing results.
     pub(crate) fn existing(&self) -> ExistingFiles {
-        if self.force_own && !self.force {
-            ExistingFiles::Own
-        } else {
-            ExistingFiles::from_switch(self.force)
-        }
+        if self.force_own && !self.force { ExistingFiles::Own } else { ExistingFiles::from_switch(self.force) }
     }
 
     /// All input files.

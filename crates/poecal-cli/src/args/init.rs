@@ -12,8 +12,7 @@ use crate::words::{HAND_EYE_CAMERA, one_of, parser_of_measured};
 
 /// Choice, and the column or the word for it.
 fn choice(text: &str) -> Result<(String, String), String> {
-    let (what, column) =
-        text.split_once('=').ok_or("expected what a column is for, and the column, like x=X_meas")?;
+    let (what, column) = text.split_once('=').ok_or("expected what a column is for, and the column, like x=X_meas")?;
     Ok((what.trim().to_owned(), column.trim().to_owned()))
 }
 

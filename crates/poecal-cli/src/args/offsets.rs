@@ -35,9 +35,7 @@ impl OffsetsArgs {
     /// Statement about a frame.
     pub(crate) fn stated_constraint(&self, frame: OuterFrame) -> Result<Option<EndConstraint>> {
         match (self.free.contains(&frame), self.fix.contains(&frame)) {
-            (true, true) => {
-                ErrorKind::Option.refuse("found a frame in --free and in --fix, expected one of the two")
-            }
+            (true, true) => ErrorKind::Option.refuse("found a frame in --free and in --fix, expected one of the two"),
             (true, false) => Ok(Some(EndConstraint::Free)),
             (false, true) => Ok(Some(EndConstraint::Kept)),
             (false, false) => Ok(None),

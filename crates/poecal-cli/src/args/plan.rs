@@ -10,8 +10,8 @@ use poecal_plan::plan::{PlanCriterion, RobotError};
 
 use super::shared_args::{CameraArgs, ColumnArgs, FIT, TextOutput, TreeArgs};
 use crate::quantity::{
-    BelievedTolerance, LengthAndAngle, WorkspaceChoice, box_m, direction, distances_m, height_m, parse_count,
-    place_m, robot_error, seconds, sigma_m, sigma_rad,
+    BelievedTolerance, LengthAndAngle, WorkspaceChoice, box_m, direction, distances_m, height_m, parse_count, place_m,
+    robot_error, seconds, sigma_m, sigma_rad,
 };
 use crate::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, parser_of_simulated};
 
@@ -52,12 +52,7 @@ pub(crate) struct PlanArgs {
     pub(crate) candidates: Option<PathBuf>,
     /// Workspace in which predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip in a
     /// box of the base frame, from one corner to the other
-    #[arg(
-        long,
-        value_name = "limits|FILE|X,Y,Z:X,Y,Zmm",
-        default_value = "limits",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "limits|FILE|X,Y,Z:X,Y,Zmm", default_value = "limits", allow_hyphen_values = true)]
     pub(crate) workspace: WorkspaceChoice,
     /// Rows that are in the list in any case, or were measured already (a table of joint readings): new ones complete them, and --count counts both.
     /// Rows whose `set` is held_out do not count

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use poecal_formats::urdf::{ChainSelection, named_link};
 use poecal_import::{
-    ColumnMap, FrameGrouping, InstrumentNoise, Join, Lag, PlaneContact, ReadOptions, SocketDistances,
-    camera_file,
+    ColumnMap, FrameGrouping, InstrumentNoise, Join, Lag, PlaneContact, ReadOptions, SocketDistances, camera_file,
 };
 use poecal_numerics::error::ErrorKind;
 use poecal_results::output::{ExistingFiles, ReservedFile};
@@ -67,10 +66,7 @@ pub(crate) struct TreeArgs {
 
 impl TreeArgs {
     /// The selection; with the links of a mapping, if it could be read.
-    pub(crate) fn selection(
-        &self,
-        options: Option<&ReadOptions>,
-    ) -> poecal_numerics::error::Result<ChainSelection> {
+    pub(crate) fn selection(&self, options: Option<&ReadOptions>) -> poecal_numerics::error::Result<ChainSelection> {
         with_mapping(self.chain.selection().join(&self.instrument, &self.target)?, options)
     }
 }
@@ -249,9 +245,7 @@ impl TextOutput {
         console: &Console,
     ) -> poecal_numerics::error::Result<Option<ReservedFile>> {
         let out = self.out.as_deref().filter(|out| *out != Path::new("-"));
-        out.map(|out| {
-            ReservedFile::reserve(out, ExistingFiles::from_switch(self.force), inputs, &mut console.warner())
-        })
-        .transpose()
+        out.map(|out| ReservedFile::reserve(out, ExistingFiles::from_switch(self.force), inputs, &mut console.warner()))
+            .transpose()
     }
 }

@@ -58,12 +58,7 @@ pub(crate) struct Simulate {
     pub(crate) camera: Option<CameraMounting>,
     /// The board in the pictures, as poecal detect --print draws it
     #[cfg(any(unix, windows))]
-    #[arg(
-        long,
-        value_name = "SPEC",
-        default_value = "charuco:7x5:36mm:26mm:DICT_4X4_50",
-        requires = "camera"
-    )]
+    #[arg(long, value_name = "SPEC", default_value = "charuco:7x5:36mm:26mm:DICT_4X4_50", requires = "camera")]
     pub(crate) board: BoardSpec,
     /// Folder for the files
     #[arg(long, value_name = "DIR")]

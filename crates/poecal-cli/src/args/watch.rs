@@ -25,12 +25,7 @@ pub(crate) struct WatchArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) candidates: Option<PathBuf>,
     /// Workspace, as of poecal plan
-    #[arg(
-        long,
-        value_name = "limits|FILE|X,Y,Z:X,Y,Zmm",
-        default_value = "limits",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "limits|FILE|X,Y,Z:X,Y,Zmm", default_value = "limits", allow_hyphen_values = true)]
     pub(crate) workspace: WorkspaceChoice,
     /// End with code 0 as soon as the expected error is at most this, like 0.15mm: of the corrected model, of the calibrated one without
     /// corrections

@@ -85,8 +85,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    let told =
-        if arguments.json { console.data_of(&text, &out) } else { console.say_of(&(text + &written), &out) };
+    let told = if arguments.json { console.data_of(&text, &out) } else { console.say_of(&(text + &written), &out) };
     Ok(code.max(told))
 }
 
@@ -124,9 +123,8 @@ fn record(arguments: &Calibrate) -> Result<Record> {
 /// The model, if it and measurements are named, by arguments or settings.
 fn stated_model(arguments: &Calibrate) -> Result<&Path> {
     let missing = |what: &str| {
-        ErrorKind::Option.refuse(format!(
-            "found no {what}, expected `poecal calibrate MODEL FILES…`, or settings that name both"
-        ))
+        ErrorKind::Option
+            .refuse(format!("found no {what}, expected `poecal calibrate MODEL FILES…`, or settings that name both"))
     };
     match &arguments.model {
         None => missing("model"),
@@ -250,8 +248,7 @@ struct CalibrateOutputs {
 impl CalibrateOutputs {
     fn reserve(arguments: &Calibrate, out: &Path, console: &Console) -> Result<Self> {
         let (existing, inputs) = (arguments.existing(), arguments.inputs());
-        let folder =
-            ReservedFolder::reserve(out, Contents::Calibration, existing, &inputs, &mut console.warner())?;
+        let folder = ReservedFolder::reserve(out, Contents::Calibration, existing, &inputs, &mut console.warner())?;
         let report = match &arguments.report {
             Some(ReportPlace::File(path)) => folder.reserve_report(path, &inputs, &mut console.warner())?,
             Some(ReportPlace::None) | None => None,
@@ -282,25 +279,19 @@ fn write(
 ) -> Result<String> {
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
-    let residuals =
-        (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::from_calibration(data, calibration));
+    let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::from_calibration(data, calibration));
     let own = out.join("calibration.json");
     let report = residuals.as_ref().map(|rows| page(&file, rows, &own, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
-    let written =
-        output::write(places.folder, places.report, model, &calibration.robot_with_targets(), results)?;
+    let written = output::write(places.folder, places.report, model, &calibration.robot_with_targets(), results)?;
     console.warnings(&written.notes);
     let has_report = written.files.iter().any(|name| *name == output::REPORT);
     let mut words = if has_report && !arguments.verbose {
         let beside = written.files.len() - 1;
         label_paragraph(
             "written",
-            &format!(
-                "{}: open {}; {beside} files beside it",
-                printable_path(&written.folder),
-                output::REPORT
-            ),
+            &format!("{}: open {}; {beside} files beside it", printable_path(&written.folder), output::REPORT),
         )
     } else {
         style::describe_written_files(&written.folder, &written.files)

@@ -26,7 +26,9 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     let model = Model::read(&arguments.calibration, &ChainSelection::default())?;
     let model = if arguments.of == AcceptedModel::Corrected { model.corrected_model()? } else { model };
     let ModelSource::Calibration(file) = &model.source else {
-        return Err(ErrorKind::Option.error("found a robot model, expected a calibration.json, which has the nominal robot and the actual one").in_file(&arguments.calibration));
+        return Err(ErrorKind::Option
+            .error("found a robot model, expected a calibration.json, which has the nominal robot and the actual one")
+            .in_file(&arguments.calibration));
     };
     file.gain_doubt().into_iter().for_each(|doubt| console.warning(doubt));
     let worse = arguments.require_gain && !file.has_clear_gain();
@@ -47,13 +49,10 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
         ));
     }
     let read = model.reads(arguments.columns.options()?);
-    let options =
-        TableOptions { read, check: arguments.check, change: change(arguments), each: arguments.json };
+    let options = TableOptions { read, check: arguments.check, change: change(arguments), each: arguments.json };
     let is_told = place.is_some() || arguments.dry_run;
     let (summary, table) = match place {
-        Some(place) => {
-            place.write_by(|out| compensate_table(&arguments.program, robots, &factors, &options, out))?
-        }
+        Some(place) => place.write_by(|out| compensate_table(&arguments.program, robots, &factors, &options, out))?,
         None => compensate_table(&arguments.program, robots, &factors, &options, &mut |piece| {
             if arguments.dry_run { Ok(()) } else { console.data(piece) }
         })?,
@@ -106,10 +105,8 @@ fn robot_program(
         ));
     }
     if arguments.third_axis.is_some() && language != Language::Fanuc {
-        return ErrorKind::Option.refuse(format!(
-            "found --third-axis for a program in {}, expected one of FANUC",
-            language.title()
-        ));
+        return ErrorKind::Option
+            .refuse(format!("found --third-axis for a program in {}, expected one of FANUC", language.title()));
     }
     let options = ProgramOptions {
         language,
@@ -167,11 +164,9 @@ fn factors(robot: &Robot, stated: &[String], console: &Console) -> Result<Vec<f6
             Some((index, value.trim().parse::<f64>().ok().filter(|it| it.is_finite())?))
         });
         let Some((index, value)) = found else {
-            let known =
-                if names.is_empty() { "this model has no factors".to_owned() } else { names.join(", ") };
-            return ErrorKind::Option.refuse(format!(
-                "found --factors {text}, expected NAME=VALUE with a factor of the model: {known}"
-            ));
+            let known = if names.is_empty() { "this model has no factors".to_owned() } else { names.join(", ") };
+            return ErrorKind::Option
+                .refuse(format!("found --factors {text}, expected NAME=VALUE with a factor of the model: {known}"));
         };
         values[index] = value;
         is_stated[index] = true;

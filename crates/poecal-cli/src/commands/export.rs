@@ -30,10 +30,8 @@ fn by_name(arguments: &Export) -> Result<ExportFormat> {
                 |out| format!("found no form in the name `{}`", out.display()),
             );
             let words: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.word()).collect();
-            let message = format!(
-                "{found}, expected --out NAME.urdf or NAME.toml, or --format with one of {}",
-                words.join(", ")
-            );
+            let message =
+                format!("{found}, expected --out NAME.urdf or NAME.toml, or --format with one of {}", words.join(", "));
             ErrorKind::Option.refuse(message)
         }
     }
@@ -45,9 +43,8 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         Some(ExportForm::Open(format)) => format,
         None => by_name(arguments)?,
         Some(ExportForm::Closed(why)) => {
-            return ErrorKind::Option.refuse(format!(
-                "--format: found a form whose maker publishes no format for this ({why}): {INSTEAD}"
-            ));
+            return ErrorKind::Option
+                .refuse(format!("--format: found a form whose maker publishes no format for this ({why}): {INSTEAD}"));
         }
     };
     for (name, is_there, of) in [
@@ -56,10 +53,8 @@ fn format(arguments: &Export) -> Result<ExportFormat> {
         ("--motors", arguments.motors.is_some(), ExportFormat::Lerobot),
     ] {
         if is_there && format != of {
-            return ErrorKind::Option.refuse(format!(
-                "found {name} beside another form, expected it with --format {} alone",
-                of.word()
-            ));
+            return ErrorKind::Option
+                .refuse(format!("found {name} beside another form, expected it with --format {} alone", of.word()));
         }
     }
     Ok(format)
@@ -104,8 +99,7 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
     };
     console.warnings(&exported.notes);
     if exported.beside.is_some() && beside.is_none() {
-        console
-            .warning("what the joints do beyond geometry is in a file beside --out FILE, FILE.joints.json");
+        console.warning("what the joints do beyond geometry is in a file beside --out FILE, FILE.joints.json");
     }
     console.deliver(exported.text, place)?;
     if let Some((text, place, name)) = beside {

@@ -13,8 +13,8 @@ use poecal_numerics::threads::threads_now;
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::fleet::{
-    InboxFile, InputRow, LEDGER, Ledger, LedgerRow, Station, find_doubled_files, find_exchanged_robot,
-    list_files, read_ledgers,
+    InboxFile, InputRow, LEDGER, Ledger, LedgerRow, Station, find_doubled_files, find_exchanged_robot, list_files,
+    read_ledgers,
 };
 use poecal_results::output::{ExistingFiles, ReservedFile};
 use poecal_results::settings::{SettingValue, Settings};
@@ -222,12 +222,9 @@ fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> 
         return row;
     }
     match find_exchanged_robot(station, &row, ledger) {
-        Some(sentence) => LedgerRow {
-            exit: row.exit.max(WORSE),
-            reason: Some(sentence.clone()),
-            of_another: Some(sentence),
-            ..row
-        },
+        Some(sentence) => {
+            LedgerRow { exit: row.exit.max(WORSE), reason: Some(sentence.clone()), of_another: Some(sentence), ..row }
+        }
         None => row,
     }
 }
@@ -341,8 +338,7 @@ fn calibrate_robot(station: &Station, found: &InboxFile, row: LedgerRow, prior: 
 /// Runs the program with these words, and returns its code and its error messages. Within another program, such as Python, it runs in this process.
 fn run_program(words: Vec<OsString>) -> (u8, String) {
     let own = std::env::current_exe().ok();
-    let is_own =
-        own.as_ref().and_then(|it| it.file_stem()?.to_str()).is_some_and(|stem| stem.starts_with("poecal"));
+    let is_own = own.as_ref().and_then(|it| it.file_stem()?.to_str()).is_some_and(|stem| stem.starts_with("poecal"));
     if let (Some(own), true) = (own, is_own) {
         let done = Command::new(own).args(&words).stdin(Stdio::null()).stdout(Stdio::null()).output();
         return match done {
@@ -360,11 +356,7 @@ fn run_program(words: Vec<OsString>) -> (u8, String) {
 
 /// Rows of the named ledgers, or of the station's.
 fn rows(station: &Station, ledgers: &[PathBuf]) -> Result<Vec<LedgerRow>> {
-    if ledgers.is_empty() {
-        read_ledgers(std::slice::from_ref(&station.ledger))
-    } else {
-        read_ledgers(ledgers)
-    }
+    if ledgers.is_empty() { read_ledgers(std::slice::from_ref(&station.ledger)) } else { read_ledgers(ledgers) }
 }
 
 fn report_of(options: &FleetReport, console: &Console) -> Result<u8> {

@@ -43,23 +43,16 @@ impl FramesOutputArgs {
         console: &Console,
     ) -> Result<Option<ReservedFolder>> {
         let existing = ExistingFiles::from_switch(self.force);
-        let reserve =
-            |out: &PathBuf| ReservedFolder::reserve(out, contents, existing, inputs, &mut console.warner());
+        let reserve = |out: &PathBuf| ReservedFolder::reserve(out, contents, existing, inputs, &mut console.warner());
         self.out.as_ref().map(reserve).transpose()
     }
 
     /// Writes and prints a result.
-    pub(super) fn put(
-        &self,
-        place: Option<ReservedFolder>,
-        found: FramesOutput,
-        console: &Console,
-    ) -> Result<u8> {
+    pub(super) fn put(&self, place: Option<ReservedFolder>, found: FramesOutput, console: &Console) -> Result<u8> {
         let FramesOutput { json: (name, json), table, texts, level } = found;
         let written = place.map(|place| write_texts(place, (name, json.clone()), texts)).transpose()?;
-        let words = written
-            .as_ref()
-            .map_or_else(String::new, |it| style::describe_written_files(&it.folder, &it.files));
+        let words =
+            written.as_ref().map_or_else(String::new, |it| style::describe_written_files(&it.folder, &it.files));
         let text = if self.json { json } else { table + &words };
         let told = match (&written, self.json) {
             (Some(it), true) => console.data_of(&text, &it.folder),

@@ -41,12 +41,9 @@ pub(crate) fn hand_eye(arguments: &HandEyeArgs, typed: &[OsString], console: &Co
     let arm = robot.map(|robot| by_joints(robot, &poses, &found, arguments)).transpose()?;
     let weakens = arm.as_ref().and_then(|arm| arm.errors.as_ref().ok()?.weakens());
     weakens.into_iter().for_each(|reason| found.weaken(reason));
-    let names = arguments
-        .frame_names
-        .clone()
-        .unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::from_robot));
-    let result =
-        HandEyeResult { found: &found, poses: &poses, names: &names, command: &command, arm: arm.as_ref() };
+    let names =
+        arguments.frame_names.clone().unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::from_robot));
+    let result = HandEyeResult { found: &found, poses: &poses, names: &names, command: &command, arm: arm.as_ref() };
     let found = FramesOutput {
         json: ("hand_eye.json", result.to_text()?),
         table: report::hand_eye(&result),
@@ -57,12 +54,7 @@ pub(crate) fn hand_eye(arguments: &HandEyeArgs, typed: &[OsString], console: &Co
 }
 
 /// Additional results from the joint readings of the poses.
-fn by_joints(
-    robot: &Robot,
-    poses: &PosePairs,
-    found: &Found,
-    arguments: &HandEyeArgs,
-) -> Result<ArmByJoints> {
+fn by_joints(robot: &Robot, poses: &PosePairs, found: &Found, arguments: &HandEyeArgs) -> Result<ArmByJoints> {
     let data = session_of(robot, &poses.joints, &poses.target, found)?;
     ArmByJoints::new((robot, &data), found, arm_too(robot, &data), with_arm(arguments))
 }

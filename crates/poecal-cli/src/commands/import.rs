@@ -18,8 +18,9 @@ use crate::style::{label_paragraph, printable_path};
 
 pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     let (Some(path), false) = (&arguments.model, arguments.measurements.is_empty()) else {
-        return ErrorKind::Option
-            .refuse("found no measurements, expected `poecal import MODEL FILES… --out FILE`, or settings that name both");
+        return ErrorKind::Option.refuse(
+            "found no measurements, expected `poecal import MODEL FILES… --out FILE`, or settings that name both",
+        );
     };
     if !arguments.reading.meaning.instrument_noise.is_empty() {
         return ErrorKind::Option.refuse(
@@ -50,18 +51,13 @@ pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     place.write(vec![table.into()])?;
     map_place.write(vec![map.into()])?;
     let rows = file.data.len();
-    let text = label_paragraph(
-        "written",
-        &format!("{}, {}", printable_path(&arguments.out), printable_path(&beside)),
-    ) + &label_paragraph("rows", &format!("{rows} of {} files", arguments.measurements.len()))
+    let text = label_paragraph("written", &format!("{}, {}", printable_path(&arguments.out), printable_path(&beside)))
+        + &label_paragraph("rows", &format!("{rows} of {} files", arguments.measurements.len()))
         + &label_paragraph(
             "calibrate",
             &format!("poecal calibrate {} {}", printable_path(path), printable_path(&arguments.out)),
         )
-        + &label_paragraph(
-            "again",
-            &format!("poecal import --settings {} --out FILE", printable_path(&beside)),
-        );
+        + &label_paragraph("again", &format!("poecal import --settings {} --out FILE", printable_path(&beside)));
     Ok(console.say_of(&text, &arguments.out))
 }
 
@@ -91,8 +87,7 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     text("base_link", chain.chain.base_link.as_deref().map(quote_toml));
     text("tip_link", chain.chain.tip_link.as_deref().map(quote_toml));
     let pairs = |pairs: &[(String, String)]| {
-        let all: Vec<String> =
-            pairs.iter().map(|(name, link)| quote_toml(&format!("{name}={link}"))).collect();
+        let all: Vec<String> = pairs.iter().map(|(name, link)| quote_toml(&format!("{name}={link}"))).collect();
         (!all.is_empty()).then(|| format!("[{}]", all.join(", ")))
     };
     text("instrument", pairs(&chain.instrument));
@@ -101,13 +96,9 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     text("strict", meaning.strict.then(|| "true".to_owned()));
     text(
         "device_frames",
-        (meaning.device_frames == FrameGrouping::PerFile)
-            .then(|| quote_toml(word_of(FRAMES, &meaning.device_frames))),
+        (meaning.device_frames == FrameGrouping::PerFile).then(|| quote_toml(word_of(FRAMES, &meaning.device_frames))),
     );
-    text(
-        "contact",
-        (meaning.contact == PlaneContact::Flush).then(|| quote_toml(word_of(CONTACT, &meaning.contact))),
-    );
+    text("contact", (meaning.contact == PlaneContact::Flush).then(|| quote_toml(word_of(CONTACT, &meaning.contact))));
     text("train_where", reading.train_where.as_deref().map(quote_toml));
     // Recognised values are stated.
     text("join", meaning.join.or(file.join).map(|join| quote_toml(word_of(JOIN, &join))));
@@ -154,8 +145,7 @@ fn describe(out: &mut String, file: &MeasurementFile) {
 fn known_inputs(settings: &Path) -> Vec<(String, String)> {
     let mut text = String::new();
     // Their messages were printed before.
-    if disk::current_disk().open(settings).and_then(|it| it.take(LARGEST).read_to_string(&mut text)).is_err()
-    {
+    if disk::current_disk().open(settings).and_then(|it| it.take(LARGEST).read_to_string(&mut text)).is_err() {
         return Vec::new();
     }
     let mut found = Vec::new();
@@ -180,9 +170,7 @@ fn describe_changed_files(known: &[(String, String)], file: &MeasurementFile) ->
     let other = file.sha256.iter().filter(is_other);
     other
         .map(|(path, _)| {
-            format!(
-                "{path}: it is not the file that the settings were made of: its checksum (SHA-256) is another"
-            )
+            format!("{path}: it is not the file that the settings were made of: its checksum (SHA-256) is another")
         })
         .collect()
 }

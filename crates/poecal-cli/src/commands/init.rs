@@ -46,8 +46,7 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         printable_path(&written.folder.join("README.md"))
     );
-    let words =
-        style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
+    let words = style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }
 
@@ -58,13 +57,8 @@ fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console:
         console.data(&report::json(&guess)?)?;
         return Ok(DONE);
     }
-    let place = ReservedFolder::reserve(
-        &arguments.out,
-        Contents::Project,
-        ExistingFiles::Kept,
-        &[],
-        &mut console.warner(),
-    )?;
+    let place =
+        ReservedFolder::reserve(&arguments.out, Contents::Project, ExistingFiles::Kept, &[], &mut console.warner())?;
     let ColumnGuess { mapping, missing, .. } = guess;
     let written = write_texts(place, ("columns.toml", mapping), Vec::new())?;
     if !missing.is_empty() {
@@ -79,24 +73,17 @@ fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console:
         printable_path(file),
         printable_path(&written.folder.join("columns.toml"))
     );
-    let words =
-        style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
+    let words = style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }
 
 /// Writes a table to fill, and names the command that reads it; `{}` is its path there.
-fn table(
-    arguments: &Init,
-    (name, text): (&'static str, String),
-    words: &str,
-    console: &Console,
-) -> Result<u8> {
+fn table(arguments: &Init, (name, text): (&'static str, String), words: &str, console: &Console) -> Result<u8> {
     let (contents, existing) = (Contents::Project, ExistingFiles::Kept);
     let place = ReservedFolder::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
     let written = write_texts(place, (name, text), Vec::new())?;
     let file = printable_path(&written.folder.join(name));
     let next = format!("fill in a row for each pose, and run `poecal {}`", words.replace("{}", &file));
-    let words =
-        style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
+    let words = style::describe_written_files(&written.folder, &written.files) + &label_paragraph("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }

@@ -25,8 +25,7 @@ pub(crate) fn iso9283(arguments: &Iso9283Args, typed: &[OsString], console: &Con
     let existing = ExistingFiles::from_switch(arguments.place.force);
     let reserved = |path: &PathBuf| ReservedFile::reserve(path, existing, &read_files, &mut console.warner());
     let page = arguments.report.as_ref().map(reserved).transpose()?;
-    let record =
-        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
     let options = TestOptions {
         reading: arguments.meaning.options()?,
@@ -35,8 +34,7 @@ pub(crate) fn iso9283(arguments: &Iso9283Args, typed: &[OsString], console: &Con
         sigma_rotation_rad: arguments.sigma_rotation,
     };
     let robot = arguments.robot.clone();
-    let robot =
-        robot.map(|path| Ok::<_, Error>((path.clone(), Inputs::checksums(std::iter::once(path.as_path()))?)));
+    let robot = robot.map(|path| Ok::<_, Error>((path.clone(), Inputs::checksums(std::iter::once(path.as_path()))?)));
     let stated = StatedTest {
         limits: arguments.accept.clone(),
         record,
@@ -44,8 +42,7 @@ pub(crate) fn iso9283(arguments: &Iso9283Args, typed: &[OsString], console: &Con
         command: Some(command(typed)),
     };
     let files = (arguments.measurements.as_slice(), arguments.reference.as_slice());
-    let JudgedTest { result: test, found, before, reads } =
-        judge_test(files, model.as_ref(), &options, stated)?;
+    let JudgedTest { result: test, found, before, reads } = judge_test(files, model.as_ref(), &options, stated)?;
     reads.iter().for_each(|read| console.said_of(read));
     if let Some(page) = page {
         let make = if arguments.certificate { report::test_certificate_page } else { report::test_page };

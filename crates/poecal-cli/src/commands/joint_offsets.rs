@@ -60,7 +60,7 @@ pub(super) fn quote_names(names: &[&str]) -> String {
 
 fn unknown_joint(name: &str, robot: &Robot) -> String {
     let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let hint = nearest_word(name, names.iter().copied())
-        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let hint =
+        nearest_word(name, names.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "))
 }

@@ -18,14 +18,12 @@ pub(crate) fn offsets(arguments: &OffsetsArgs, console: &Console) -> Result<u8> 
     let selection = arguments.chain.selection();
     let nominal = Model::read(&arguments.nominal, &selection)?;
     // Only a URDF can have several chains; the chosen one is also that of a calibration beside it.
-    let one_chain =
-        ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
+    let one_chain = ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
-    let stated =
-        [arguments.stated_constraint(OuterFrame::Base)?, arguments.stated_constraint(OuterFrame::Tip)?];
-    let explanation = ModelOffsets::from_robots(&nominal, &actual, stated)
-        .map_err(|error| error.in_file(&arguments.actual))?;
+    let stated = [arguments.stated_constraint(OuterFrame::Base)?, arguments.stated_constraint(OuterFrame::Tip)?];
+    let explanation =
+        ModelOffsets::from_robots(&nominal, &actual, stated).map_err(|error| error.in_file(&arguments.actual))?;
     for joint in &nominal.robot.joints {
         let followers = nominal.robot.followers(&joint.name);
         if !followers.is_empty() {

@@ -9,9 +9,7 @@ use poecal_model::measurement::Noise;
 use poecal_model::robot::Tolerance;
 use poecal_model::simulate::SessionKind;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_plan::plan::{
-    Conditions, DeviceView, PlanOptions, PlannedFit, plan as planned, test_cube, workspace_in,
-};
+use poecal_plan::plan::{Conditions, DeviceView, PlanOptions, PlannedFit, plan as planned, test_cube, workspace_in};
 use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::output::{ExistingFiles, ReservedFile};
@@ -100,7 +98,9 @@ fn choose_configurations(arguments: &PlanArgs, console: &Console) -> Result<u8> 
 /// Refuses pictures that no rows name.
 fn refuse_pictures(arguments: &PlanArgs) -> Result<()> {
     if arguments.cameras.files().next().is_some() || !arguments.cameras.markers.is_empty() {
-        return ErrorKind::Option.refuse("found --camera or --markers without --rows, expected both with pictures that were taken, --rows FILE");
+        return ErrorKind::Option.refuse(
+            "found --camera or --markers without --rows, expected both with pictures that were taken, --rows FILE",
+        );
     }
     Ok(())
 }
@@ -123,8 +123,7 @@ fn iso9283(
     console: &Console,
 ) -> Result<u8> {
     let visits = &arguments.visits;
-    let is_of_visits =
-        !visits.reference.is_empty() || visits.tool.is_some() || visits.repeatability.is_some();
+    let is_of_visits = !visits.reference.is_empty() || visits.tool.is_some() || visits.repeatability.is_some();
     if is_of_visits || arguments.candidates.is_some() || arguments.conditions.device.is_some() {
         return ErrorKind::Option.refuse(
             "found --purpose iso9283 with an option of visits, expected --workspace, --floor-height, --count, --program, --out and links alone",
@@ -143,19 +142,13 @@ fn iso9283(
     let cube = test_cube(&model.robot, stated, arguments.conditions.floor_height)?;
     let cycles = arguments.count as usize;
     let rows = cube.rows(cycles);
-    let as_program =
-        arguments.program.as_ref().map(|path| plan_program(path, &model.robot, &rows)).transpose()?;
+    let as_program = arguments.program.as_ref().map(|path| plan_program(path, &model.robot, &rows)).transpose()?;
     if let Some((place, text)) = program.zip(as_program) {
         place.write(vec![text.into()])?;
     }
     let told = report::TestPlan::new(&cube, cycles);
     let text = if arguments.json { report::json(&told)? } else { told.text() };
-    deliver(
-        &arguments.place,
-        (test_table(&model.robot, &cube, cycles)?, place),
-        (text, arguments.json),
-        console,
-    )
+    deliver(&arguments.place, (test_table(&model.robot, &cube, cycles)?, place), (text, arguments.json), console)
 }
 
 /// Configurations of visits to a calibrated robot.
@@ -174,8 +167,7 @@ fn visits(arguments: &PlanArgs, place: Option<ReservedFile>, console: &Console) 
         None => None,
         Some(PlannedDevice::IsKnown(is_known)) => Some(is_known),
         Some(PlannedDevice::At(_)) => {
-            return ErrorKind::Option
-                .refuse("--device: found a place, expected known or refit with --purpose drift");
+            return ErrorKind::Option.refuse("--device: found a place, expected known or refit with --purpose drift");
         }
     };
     let stated = VisitSettings {
@@ -220,12 +212,7 @@ fn deliver(
 }
 
 /// Joint readings of a file.
-pub(super) fn readings(
-    path: &PathBuf,
-    model: &Model,
-    options: &ReadOptions,
-    console: &Console,
-) -> Result<Vec<f64>> {
+pub(super) fn readings(path: &PathBuf, model: &Model, options: &ReadOptions, console: &Console) -> Result<Vec<f64>> {
     let joints = read_joints(path, &model.robot, options)?;
     console.warnings(&joints.warnings);
     Ok(joints.readings)

@@ -22,17 +22,14 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let options = arguments.columns.options();
     let target = arguments.target.as_deref();
     // Only a URDF has links.
-    let has_links =
-        !["toml", "json"].map(OsStr::new).contains(&arguments.model.extension().unwrap_or_default());
+    let has_links = !["toml", "json"].map(OsStr::new).contains(&arguments.model.extension().unwrap_or_default());
     let mounted = target.filter(|target| has_links && target.contains('=')).map(named_link).transpose()?;
     let selection = arguments.chain.selection().join(&[], mounted.as_slice())?;
     let model = read_model(&arguments.model, &with_mapping(selection, options.as_ref().ok())?, console)?;
     let model = match arguments.of {
         AcceptedModel::Corrected => {
             let corrected = model.corrected_model()?;
-            if !corrected.robot.terms.iter().all(|it| it.coefficient == 0.0)
-                && corrected.robot.gravity.is_some()
-            {
+            if !corrected.robot.terms.iter().all(|it| it.coefficient == 0.0) && corrected.robot.gravity.is_some() {
                 console.remark(
                     "predicted by the corrected model, with what the joints do beyond geometry; --model calibrated is geometry alone",
                 );
@@ -43,8 +40,7 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     };
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &model.reads(options?))?;
     console.warnings(&joints.warnings);
-    let (frame, target) =
-        (arguments.output_frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
+    let (frame, target) = (arguments.output_frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
     if arguments.with_uncertainty
         && let Some(remark) = predictions::remark(&model, &joints, frame, target)?
     {

@@ -20,15 +20,12 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let out = arguments.out.clone().unwrap_or_else(|| beside(output::REPORT));
     let path = arguments.residuals.clone().unwrap_or_else(|| beside("residuals.csv"));
     let existing = if arguments.force { ExistingFiles::Replaced } else { ExistingFiles::Own };
-    let place =
-        ReservedFile::reserve(&out, existing, &[&arguments.calibration, &path], &mut console.warner())?;
-    let stated =
-        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let place = ReservedFile::reserve(&out, existing, &[&arguments.calibration, &path], &mut console.warner())?;
+    let stated = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let mut file = CalibrationFile::read(&arguments.calibration)?;
     file.record = file.record.override_with(&stated);
     let residuals = Residuals::read(&path)?;
-    let page =
-        page(&file, &residuals, &arguments.calibration, console).map_err(|error| error.in_file(&path))?;
+    let page = page(&file, &residuals, &arguments.calibration, console).map_err(|error| error.in_file(&path))?;
     place.write(page)?;
     Ok(console.say_of(&label_paragraph("written", &printable_path(&out)), &out))
 }

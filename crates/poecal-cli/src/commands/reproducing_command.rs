@@ -3,8 +3,7 @@
 use std::ffi::OsString;
 
 /// Options that do not change the result: places, output, speed; settings are among the words already.
-const WITH_VALUE: [&str; 7] =
-    ["--history", "--out", "--threads", "--wait", "--require", "--report", "--settings"];
+const WITH_VALUE: [&str; 7] = ["--history", "--out", "--threads", "--wait", "--require", "--report", "--settings"];
 const WITHOUT_VALUE: [&str; 5] = ["--force", "--force-own", "--json", "--verbose", "--quiet"];
 
 /// Arguments of a run, the program first, without those that do not change the result.
@@ -21,8 +20,7 @@ pub(super) fn command(arguments: &[OsString]) -> String {
                 rest.next();
                 continue;
             }
-            if WITH_VALUE.iter().any(|option| word.strip_prefix(option).is_some_and(|it| it.starts_with('=')))
-            {
+            if WITH_VALUE.iter().any(|option| word.strip_prefix(option).is_some_and(|it| it.starts_with('='))) {
                 continue;
             }
         }
@@ -49,9 +47,7 @@ mod tests {
     fn what_does_not_change_the_result_is_left_out() {
         let of = |text: &str| command(&text.split(' ').map(OsString::from).collect::<Vec<_>>());
         assert_eq!(
-            of(
-                "/usr/bin/poecal --threads 4 calibrate a.urdf b.csv --out=x --seed 2 --report none --force --json"
-            ),
+            of("/usr/bin/poecal --threads 4 calibrate a.urdf b.csv --out=x --seed 2 --report none --force --json"),
             "poecal calibrate a.urdf b.csv --seed 2"
         );
         assert_eq!(of("poecal calibrate -- --out --json"), "poecal calibrate -- --out --json");

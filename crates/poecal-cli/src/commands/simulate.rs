@@ -24,11 +24,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     let model = read_model(&arguments.model, &arguments.chain.selection(None)?, console)?;
     #[cfg(any(unix, windows))]
     if let Some(camera) = arguments.camera {
-        return super::photograph::photograph(
-            (arguments, camera),
-            (&model, place, &command(arguments)),
-            console,
-        );
+        return super::photograph::photograph((arguments, camera), (&model, place, &command(arguments)), console);
     }
     let simulation = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
@@ -48,13 +44,8 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         count => Some(simulation.held_out(&made, kind, count as usize)?),
     };
     let command = command(arguments);
-    let session = SimulatedSession {
-        simulation: &simulation,
-        kind,
-        made: &made,
-        held_out: held_out.as_ref(),
-        command: &command,
-    };
+    let session =
+        SimulatedSession { simulation: &simulation, kind, made: &made, held_out: held_out.as_ref(), command: &command };
     let written = output::write_simulation(place, &model, &session)?;
     console.warnings(&written.notes);
     Ok(console.say_of(&style::describe_written_files(&written.folder, &written.files), &written.folder))
@@ -82,8 +73,7 @@ fn command(arguments: &Simulate) -> String {
     words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
     if arguments.terms != Sizes::NONE {
         let used = TermGroup::ALL.into_iter().filter(|&group| arguments.terms[group] > 0.0);
-        let used: Vec<String> =
-            used.map(|group| format!("{}={:e}", group.name(), arguments.terms[group])).collect();
+        let used: Vec<String> = used.map(|group| format!("{}={:e}", group.name(), arguments.terms[group])).collect();
         let [x, y, z] = arguments.gravity;
         words.push(format!("--terms {} --gravity {x},{y},{z}", used.join(",")));
     }

@@ -20,8 +20,7 @@ pub(crate) fn tcp(arguments: &TcpArgs, typed: &[OsString], console: &Console) ->
     let poses = read_flange_poses(&arguments.poses, arguments.units, model.as_ref().map(|it| &it.robot))?;
     console.warnings(&poses.warnings);
     poses.understood.iter().for_each(|it| console.remark(it));
-    let found =
-        tool_tip(&poses.touches, &row_name(&poses.names)).map_err(|error| error.in_file(&arguments.poses))?;
+    let found = tool_tip(&poses.touches, &row_name(&poses.names)).map_err(|error| error.in_file(&arguments.poses))?;
     let command = command(typed);
     let result = ToolResult { found: &found, poses: &poses, command: &command };
     let found = FramesOutput {

@@ -24,8 +24,7 @@ use crate::{DONE, WORSE};
 pub(crate) fn track(arguments: &TrackArgs, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let (place, page) = reserve(arguments, console)?;
-    let record =
-        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let stated = VisitSettings {
         calibration: &arguments.calibration,
         reference: &arguments.reference,
@@ -53,8 +52,8 @@ pub(crate) fn track(arguments: &TrackArgs, typed: &[OsString], console: &Console
     if let (Some(words), Some(place)) = (&arguments.recalibrate, place) {
         let (joint, part) = RepairedPart::from_name(words);
         let sources = RecalibrationSources { measurements: names, calibration, sha256 };
-        let found = recalibrate(&file, &read.data, earlier.rows(), &options, (joint, part), sources)
-            .map_err(in_file)?;
+        let found =
+            recalibrate(&file, &read.data, earlier.rows(), &options, (joint, part), sources).map_err(in_file)?;
         return deliver(&found, &file, place, console);
     }
     let found = judged(&file, &read.data, earlier.rows(), &options).map_err(in_file)?;
@@ -74,8 +73,7 @@ pub(crate) fn track(arguments: &TrackArgs, typed: &[OsString], console: &Console
     if arguments.json {
         console.data(&report::json(&told)?)?;
     } else {
-        let written =
-            arguments.report.as_deref().map(|path| label_paragraph("report", &printable_path(path)));
+        let written = arguments.report.as_deref().map(|path| label_paragraph("report", &printable_path(path)));
         console.say(&(told.text() + &written.unwrap_or_default()))?;
     }
     console.warnings(&found.notes);
@@ -92,19 +90,11 @@ fn reserve(arguments: &TrackArgs, console: &Console) -> Result<(Option<ReservedF
         let existing = ExistingFiles::from_switch(arguments.force);
         ReservedFile::reserve(path, existing, &arguments.inputs(), &mut console.warner())
     };
-    Ok((
-        arguments.out.as_ref().map(reserve).transpose()?,
-        arguments.report.as_ref().map(reserve).transpose()?,
-    ))
+    Ok((arguments.out.as_ref().map(reserve).transpose()?, arguments.report.as_ref().map(reserve).transpose()?))
 }
 
 /// Writes a calibration with one joint recalibrated, and reports that.
-fn deliver(
-    found: &RecalibratedJoint,
-    before: &CalibrationFile,
-    place: ReservedFile,
-    console: &Console,
-) -> Result<u8> {
+fn deliver(found: &RecalibratedJoint, before: &CalibrationFile, place: ReservedFile, console: &Console) -> Result<u8> {
     let text = report::describe_recalibrated(found, before);
     place.write(vec![found.file.to_text()?.into()])?;
     console.say(&text)?;

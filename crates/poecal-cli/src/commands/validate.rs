@@ -47,8 +47,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;
     let own = sha256.get(&arguments.calibration.display().to_string()).cloned();
     let inputs = inputs(arguments, typed, &read, sha256);
-    let record =
-        Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let found = Validation::from_measurements(&file, &read.data, &judging, inputs).map_err(in_file)?;
     let found = Validation { record, ..found };
     console.said_of(&read);

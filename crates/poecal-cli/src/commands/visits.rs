@@ -41,8 +41,7 @@ impl VisitedCalibration {
             if error.kind() == ErrorKind::Model { error.in_file(stated.calibration) } else { error }
         };
         let robot = file.robot().map_err(in_file)?;
-        let mut meaning =
-            ReadOptions { ignore_sets: true, controller: file.controller.clone(), ..stated.meaning };
+        let mut meaning = ReadOptions { ignore_sets: true, controller: file.controller.clone(), ..stated.meaning };
         if let Some(known) = &file.pictures {
             known.complete_options(&mut meaning).map_err(|error| error.in_file(stated.calibration))?;
         }
@@ -58,8 +57,7 @@ impl VisitedCalibration {
             tool_is_anew: stated.tool_is_anew,
             repeatability_m: stated.repeatability_m,
         };
-        let earlier =
-            EarlierRows::read(stated.calibration, stated.reference, (&file, &robot, &meaning), console)?;
+        let earlier = EarlierRows::read(stated.calibration, stated.reference, (&file, &robot, &meaning), console)?;
         Ok(VisitedCalibration { file, robot, meaning, options, earlier })
     }
 
@@ -82,8 +80,7 @@ impl VisitedCalibration {
         let kept = rows.kept_rows(&self.file);
         let found = witnesses(&self.file, &kept, readings, count, target, &self.options)?;
         let told = report::WitnessPlan::new(&found, &self.file.robot.name, new.is_some());
-        let table =
-            measurements::to_measure_again(&found.rows, &found.configurations, &self.robot, new.is_some())?;
+        let table = measurements::to_measure_again(&found.rows, &found.configurations, &self.robot, new.is_some())?;
         Ok((told, table))
     }
 }

@@ -65,8 +65,7 @@ pub(crate) fn watch(arguments: &WatchArgs, console: &Console) -> Result<u8> {
                 let line = report::RowReport::new(&model.robot, data, &row);
                 is_named |= row.mistake.is_some();
                 console.json_or_table(arguments.json, || line.json(), || line.text())?;
-                let error =
-                    row.now.map(|now| if is_corrected { now.corrected_m() } else { now.calibrated_m() });
+                let error = row.now.map(|now| if is_corrected { now.corrected_m() } else { now.calibrated_m() });
                 is_reached |= arguments.target_error.zip(error).is_some_and(|(until, error)| error <= until);
                 if is_reached && !arguments.batch {
                     return Ok(DONE);

@@ -24,8 +24,7 @@ fn limits_are_kept_exceeded_or_neither() {
     let found = file.acceptance.unwrap();
     let limit = &found.limits[0];
     assert_eq!((found.by, found.limits.len()), (AcceptedRows::HeldOut, 1));
-    let judged =
-        if found.model == AcceptedModel::Corrected { own.corrected.unwrap() } else { own.calibrated };
+    let judged = if found.model == AcceptedModel::Corrected { own.corrected.unwrap() } else { own.calibrated };
     // The table's figure, except for rounding of sums.
     assert!((limit.found / judged.position_mm().rms - 1.0).abs() < 1e-9);
     println!("{limit:?}");
@@ -33,10 +32,7 @@ fn limits_are_kept_exceeded_or_neither() {
     assert!(limit.from < limit.found && limit.found < to && limit.rows == own.count);
     assert_eq!(decide_acceptance(&folder, &format!("--accept {}mm", to * 1.001)), (Decision::Pass, 0));
     assert_eq!(decide_acceptance(&folder, &format!("--accept {}mm", limit.found)), (Decision::NotShown, 1));
-    assert_eq!(
-        decide_acceptance(&folder, &format!("--accept {}mm", limit.from * 0.999)),
-        (Decision::Fail, 1)
-    );
+    assert_eq!(decide_acceptance(&folder, &format!("--accept {}mm", limit.from * 0.999)), (Decision::Fail, 1));
     // The worst of several decides; without 59 configurations nothing bounds the 95 % quantile from above.
     assert_eq!(decide_acceptance(&folder, "--accept 10mm,5deg,max:20mm"), (Decision::Pass, 0));
     assert_eq!(
@@ -97,8 +93,7 @@ fn a_record_is_kept_and_shown_and_typed_keys_precede_those_of_the_settings() {
     folder.run_to_success("calibrate --record operator=C --record temperature=21.5C");
     let record = calibration(&folder, "poecal-out").record;
     let found: Vec<(&str, &str)> = record.entries().iter().map(|&(key, _, text)| (key, text)).collect();
-    let expected =
-        [("serial", "<b>4711</b>"), ("operator", "C"), ("date", "2026-03-02"), ("temperature", "21.5 °C")];
+    let expected = [("serial", "<b>4711</b>"), ("operator", "C"), ("date", "2026-03-02"), ("temperature", "21.5 °C")];
     assert_eq!(found, expected);
     let page = folder.read("poecal-out/report.html");
     assert!(page.contains("&lt;b&gt;4711&lt;/b&gt;") && !page.contains("<b>4711"), "escaped");

@@ -18,9 +18,7 @@ fn line(count: usize) -> Folder {
     );
     fs::create_dir(folder.path("inbox")).unwrap();
     for robot in 0..count {
-        folder.run_to_success(&format!(
-            "simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"
-        ));
+        folder.run_to_success(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
         folder.write(&format!("inbox/SN{robot}.csv"), folder.read(&format!("made{robot}/measurements.csv")));
     }
     folder
@@ -76,11 +74,7 @@ fn the_lock_of_a_killed_run_is_taken_over_with_a_line() {
     folder.write(".fleet.jsonl.poecal-lock", "process 7 on line3");
     let run = folder.run("fleet station.toml");
     assert_eq!(run.code, 0, "{}", run.err);
-    assert!(
-        run.err.contains("took over the lock of the ledger: process 7 on line3 was killed"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("took over the lock of the ledger: process 7 on line3 was killed"), "{}", run.err);
     assert!(!folder.path(".fleet.jsonl.poecal-lock").exists());
 }
 
@@ -88,10 +82,8 @@ fn the_lock_of_a_killed_run_is_taken_over_with_a_line() {
 #[test]
 fn nothing_is_lost_and_nothing_twice() {
     let folder = line(2);
-    let both = [
-        start_run(&folder, "fleet station.toml --wait 60s"),
-        start_run(&folder, "fleet station.toml --wait 60s"),
-    ];
+    let both =
+        [start_run(&folder, "fleet station.toml --wait 60s"), start_run(&folder, "fleet station.toml --wait 60s")];
     let both = both.map(end_run);
     assert_eq!(both.each_ref().map(|run| run.code), [0, 0], "{both:?}");
     assert_eq!(folder.read("fleet.jsonl").lines().count(), 2);
@@ -104,11 +96,9 @@ fn nothing_is_lost_and_nothing_twice() {
             ));
         }
     }
-    let words = |visit: &str| {
-        format!("validate results/SN0/calibration.json {visit}/measurements.csv --refit device,tool")
-    };
-    let running: Vec<Child> =
-        [0, 0, 1, 1].iter().map(|at| start_run(&folder, &words(&visits[*at]))).collect();
+    let words =
+        |visit: &str| format!("validate results/SN0/calibration.json {visit}/measurements.csv --refit device,tool");
+    let running: Vec<Child> = [0, 0, 1, 1].iter().map(|at| start_run(&folder, &words(&visits[*at]))).collect();
     for child in running {
         let run = end_run(child);
         assert!(run.code <= 1, "{}{}", run.out, run.err);
@@ -195,9 +185,7 @@ fn a_log_that_is_written_again_is_waited_for() {
     let part = |count: usize| lines[..count].concat();
     // A line that is cut, and a row that is not whole, for a moment.
     let cut = part(10)[..part(10).len() - 4].to_owned();
-    for content in
-        [String::new(), part(2), part(8), part(3), String::new(), cut, part(12) + "1,2\n", part(12)]
-    {
+    for content in [String::new(), part(2), part(8), part(3), String::new(), cut, part(12) + "1,2\n", part(12)] {
         folder.write("log.csv", content);
         step();
     }
@@ -235,11 +223,9 @@ fn a_torn_line_of_a_history_is_set_aside() {
     let words = "validate out/calibration.json made0/measurements.csv --refit device,tool --history h.jsonl";
     assert!(folder.run(words).code <= 1);
     let whole = folder.read("h.jsonl");
-    for (text, count) in [
-        (whole[..whole.len() / 2].to_owned(), 1),
-        (format!("{whole}{}", &whole[..40]), 1),
-        ("{".to_owned(), 1),
-    ] {
+    for (text, count) in
+        [(whole[..whole.len() / 2].to_owned(), 1), (format!("{whole}{}", &whole[..40]), 1), ("{".to_owned(), 1)]
+    {
         folder.write("h.jsonl", text);
         let run = folder.run(words);
         assert!(run.code <= 1, "{}", run.err);
@@ -263,11 +249,7 @@ fn help_to_a_full_disk_is_an_error() {
     for words in ["--help", "calibrate --help", "--version"] {
         let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let run = folder.run_into(words, full);
-        assert!(
-            run.code == 2 && run.err.contains("standard output cannot be written to"),
-            "{words}: {}",
-            run.err
-        );
+        assert!(run.code == 2 && run.err.contains("standard output cannot be written to"), "{words}: {}", run.err);
         assert_eq!(folder.run(words).code, 0);
     }
 }

@@ -64,8 +64,7 @@ fn check(cases: &[Case]) {
         let run = folder.run(arguments);
         let is_expected = match sentence.strip_suffix('…') {
             Some(beginning) => {
-                run.err.starts_with(&format!("error: {beginning}"))
-                    && run.err.find('\n') == Some(run.err.len() - 1)
+                run.err.starts_with(&format!("error: {beginning}")) && run.err.find('\n') == Some(run.err.len() - 1)
             }
             None => run.err == format!("error: {sentence}\n"),
         };
@@ -292,21 +291,13 @@ fn what_is_odd_but_usable_gets_a_warning() {
     folder.write("odd.csv", "a,lift,b,colour,sigma_positon\n0.1,0.2,0.3,red,1\n0.1,0.6,0.3,blue,1\n");
     let run = folder.run("predict robot.urdf odd.csv");
     assert_eq!((run.code, run.out.lines().count()), (0, 3));
-    assert_eq!(
-        run.err,
-        "warning: odd.csv: joint `lift` lies beyond its limits 0 to 0.5 m in 1 row (line 3)\n"
-    );
+    assert_eq!(run.err, "warning: odd.csv: joint `lift` lies beyond its limits 0 to 0.5 m in 1 row (line 3)\n");
     assert_eq!(folder.run("predict robot.urdf odd.csv --quiet").err, "");
-    folder.write(
-        "extra.csv",
-        format!("a,lift,b,x,y,z,colour,sigma_positon\n{}", ROW.replace('\n', ",red,1\n")),
-    );
+    folder.write("extra.csv", format!("a,lift,b,x,y,z,colour,sigma_positon\n{}", ROW.replace('\n', ",red,1\n")));
     let run = folder.run("calibrate robot.urdf extra.csv --held-out 0");
     assert_eq!(run.code, 2);
     assert_eq!(
         run.err.lines().next(),
-        Some(
-            "warning: extra.csv: ignored the columns `colour`, `sigma_positon` (did you mean `sigma_position`?)"
-        )
+        Some("warning: extra.csv: ignored the columns `colour`, `sigma_positon` (did you mean `sigma_position`?)")
     );
 }

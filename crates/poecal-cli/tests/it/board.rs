@@ -9,17 +9,13 @@ fn a_board_is_drawn_as_pdf_and_svg() {
     let folder = Folder::new();
     let out = folder.run_to_success(&format!("detect --print {SPEC} --paper a4 --out board.pdf"));
     assert!(out.starts_with("written       board.pdf\n"), "{out}");
-    for words in
-        ["5 columns by 7 rows of 36 mm squares", "210 x 297 mm", &format!("calibrate     --markers {SPEC}\n")]
+    for words in ["5 columns by 7 rows of 36 mm squares", "210 x 297 mm", &format!("calibrate     --markers {SPEC}\n")]
     {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
     let pdf = folder.read("board.pdf");
     assert!(pdf.starts_with("%PDF-") && pdf.contains("/MediaBox [0 0 595.27559 841.88976]"));
-    assert_eq!(
-        folder.run_to_success(&format!("detect --print {SPEC} --paper letter --out board.SVG --quiet")),
-        ""
-    );
+    assert_eq!(folder.run_to_success(&format!("detect --print {SPEC} --paper letter --out board.SVG --quiet")), "");
     assert!(folder.read("board.SVG").contains("width=\"215.9mm\" height=\"279.4mm\""));
 }
 
@@ -46,9 +42,8 @@ fn dots_and_tags_are_drawn_and_measured_too() {
         ),
     ] {
         let folder = Folder::new();
-        let out = folder
-            .run_to_success(&format!("detect --print {spec} --out board.pdf"))
-            .replace("\n              ", " ");
+        let out =
+            folder.run_to_success(&format!("detect --print {spec} --out board.pdf")).replace("\n              ", " ");
         assert!(out.contains(words) && folder.read("board.pdf").starts_with("%PDF-"), "{out}");
         folder.run_to_success(&format!("detect --print {spec} --out board.svg --quiet"));
         assert!(folder.read("board.svg").contains("check the rulers"));

@@ -17,9 +17,7 @@ fn a_certificate_states_the_session_and_its_result() {
     );
     assert_eq!(out, "written       poecal-out/certificate.html\n");
     let page = folder.read("poecal-out/certificate.html");
-    for words in
-        ["4712", "Mia", "2027-11-28", "data:image/svg+xml,%3C", "k = 2", "calibration.json <code>", "PASS"]
-    {
+    for words in ["4712", "Mia", "2027-11-28", "data:image/svg+xml,%3C", "k = 2", "calibration.json <code>", "PASS"] {
         assert!(page.contains(words), "{words}");
     }
     assert!(!page.contains("4711") && !page.contains("<script"));
@@ -28,10 +26,7 @@ fn a_certificate_states_the_session_and_its_result() {
     folder.write("theirs.html", "theirs");
     for (words, sentence) in [
         ("report poecal-out/calibration.json --certificate --out theirs.html", "theirs.html"),
-        (
-            "report robot.urdf --certificate",
-            "found a URDF, expected a calibration as written by `poecal calibrate`",
-        ),
+        ("report robot.urdf --certificate", "found a URDF, expected a calibration as written by `poecal calibrate`"),
         (
             "report poecal-out/calibration.json --certificate --record valid_until=tomorrow",
             "found `tomorrow` as the day until which it is valid",

@@ -11,13 +11,7 @@ fn folder_with_checks() -> Folder {
     let folder = session(SessionKind::POINT);
     folder.run_to_success("calibrate robot.urdf measurements.csv");
     // The same robot and device, in configurations that follow those of the calibration.
-    write_measurements(
-        &folder,
-        "all.csv",
-        SessionKind::POINT,
-        "",
-        &Simulation { count: 160, ..Simulation::default() },
-    );
+    write_measurements(&folder, "all.csv", SessionKind::POINT, "", &Simulation { count: 160, ..Simulation::default() });
     let all = folder.read("all.csv");
     for (name, first) in [("spring.csv", 61), ("autumn.csv", 101)] {
         let is_of = |(line, _): &(usize, &str)| *line == 0 || (first..first + 40).contains(line);
@@ -38,9 +32,7 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     let out = folder.run_to_success(command);
     println!("{out}");
     assert!(out.starts_with("verdict       the calibration "), "{out}");
-    assert!(
-        out.contains("written       spring\n") && out.contains("validation.json, errors.csv, report.html")
-    );
+    assert!(out.contains("written       spring\n") && out.contains("validation.json, errors.csv, report.html"));
     let found: Value = serde_json::from_str(&folder.read("spring/validation.json")).unwrap();
     assert_eq!((&found["schema"], &found["count"]), (&"poecal-validation-1".into(), &40.into()));
     assert_eq!((&found["record"]["operator"], &found["record"]["serial"]), (&"Mia".into(), &"4711".into()));
@@ -51,8 +43,7 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     let column = |name: &str| head.iter().position(|it| *it == name).unwrap();
     let (error, bound) = (column("position_error[mm]"), column("position_bound95[mm]"));
     let number = |line: &str, at: usize| line.split(',').nth(at).unwrap().parse::<f64>().unwrap();
-    let all: Vec<(f64, f64)> =
-        rows.lines().skip(1).map(|line| (number(line, error), number(line, bound))).collect();
+    let all: Vec<(f64, f64)> = rows.lines().skip(1).map(|line| (number(line, error), number(line, bound))).collect();
     // Its components, with their signs, are those of the error.
     let components = ["x[mm]", "y[mm]", "z[mm]"].map(column);
     let is_signed = |line: &str| components.iter().any(|&at| number(line, at) < 0.0);
@@ -79,16 +70,14 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     assert!(folder.read("spring/report.html") == page, "another page");
     // The results of the calibration are never replaced by those of a check, nor the other way round.
     let own = folder.read("poecal-out/report.html");
-    let run =
-        folder.run("validate poecal-out/calibration.json spring.csv --refit device --out poecal-out --force");
+    let run = folder.run("validate poecal-out/calibration.json spring.csv --refit device --out poecal-out --force");
     assert_eq!(
         run.err,
         "error: poecal-out: found the results of a calibration, expected another folder: choose one with --out\n"
     );
     assert!(run.code == 2 && folder.read("poecal-out/report.html") == own);
     let run = folder.run("calibrate robot.urdf measurements.csv --out spring --force");
-    let refused =
-        "error: spring: found the results of a check, expected another folder: choose one with --out\n";
+    let refused = "error: spring: found the results of a check, expected another folder: choose one with --out\n";
     assert!(run.err.ends_with(refused), "{}", run.err);
     assert!(run.code == 2 && folder.read("spring/report.html") == page);
 }
@@ -104,11 +93,8 @@ fn the_history_gets_a_line_a_check() {
     let cut = folder.read("poecal-out/history.jsonl") + "{\"time\": \"2026-";
     folder.write("poecal-out/history.jsonl", cut);
     folder.run_to_success(&format!("{check} autumn.csv --refit device --quiet --report autumn.html"));
-    let lines: Vec<Value> = folder
-        .read("poecal-out/history.jsonl")
-        .lines()
-        .filter_map(|line| serde_json::from_str(line).ok())
-        .collect();
+    let lines: Vec<Value> =
+        folder.read("poecal-out/history.jsonl").lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
     println!("{}", lines[1]);
     assert_eq!(lines.len(), 2);
     assert_eq!(lines[1]["inputs"]["measurements"], serde_json::json!(["autumn.csv"]));
@@ -117,9 +103,7 @@ fn the_history_gets_a_line_a_check() {
     let page = folder.read("autumn.html");
     assert!(page.contains("Checks of this calibration") && page.contains(lines[0]["time"].as_str().unwrap()));
     // A calibration again into the same folder keeps the history, which does not belong to the new calibration.
-    folder.run_to_success(
-        "calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet",
-    );
+    folder.run_to_success("calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet");
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 3);
     folder.run_to_success(&format!("{check} autumn.csv --refit device --quiet --report again.html"));
     assert!(!folder.read("again.html").contains("Checks of this calibration"));
@@ -131,10 +115,7 @@ fn the_history_gets_a_line_a_check() {
     // A file that is no history is not written to.
     let rows = folder.read("spring.csv");
     let run = folder.run(&format!("{check} spring.csv --refit device --history spring.csv"));
-    assert_eq!(
-        run.err,
-        "error: spring.csv: found a file without a check, expected the history of checks or nothing\n"
-    );
+    assert_eq!(run.err, "error: spring.csv: found a file without a check, expected the history of checks or nothing\n");
     assert_eq!((run.code, folder.read("spring.csv")), (2, rows));
     // If the default history cannot be kept, the check is done nevertheless, and a note states that.
     std::fs::remove_file(folder.path("poecal-out/history.jsonl")).unwrap();

@@ -23,8 +23,8 @@ fn calibrate_writes_its_folder_and_tells_three_models() {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
     let files = ["measurements.csv", "poecal-out", "robot.urdf"].map(|name| folder.path(name));
-    let results = ["calibrated.urdf", "calibration.json", "report.html", "residuals.csv"]
-        .map(|name| files[1].join(name));
+    let results =
+        ["calibrated.urdf", "calibration.json", "report.html", "residuals.csv"].map(|name| files[1].join(name));
     let mut expected: Vec<_> = files.into_iter().chain(results).collect();
     expected.sort();
     assert_eq!(folder.listing().into_keys().collect::<Vec<_>>(), expected);
@@ -69,8 +69,8 @@ fn training_figures_are_never_shown_without_the_word() {
         &Simulation { count: 25, noise_position_m: 6e-5, ..Simulation::default() },
     );
     for arguments in ["--validate other.csv", "--held-out 0", "--train-where stage=1", ""] {
-        let out = folder
-            .run_to_success(&format!("calibrate robot.urdf measurements.csv --force --verbose {arguments}"));
+        let out =
+            folder.run_to_success(&format!("calibrate robot.urdf measurements.csv --force --verbose {arguments}"));
         // Each block of figures begins with a row that names its set; the first block of a table is the training one.
         let mut set = "";
         for line in out.lines() {
@@ -88,15 +88,9 @@ fn training_figures_are_never_shown_without_the_word() {
         }
     }
     let found = folder.run("validate poecal-out/calibration.json poecal-out/../measurements.csv other.csv");
-    let warning =
-        "measurements.csv: the calibration was made of this file, so it fits these rows better than new ones";
-    assert!(
-        found.err.contains(warning) && !found.err.contains("other.csv: the calibration"),
-        "{}",
-        found.err
-    );
-    let out =
-        folder.run_to_success("validate poecal-out/calibration.json measurements.csv --refit device,tool");
+    let warning = "measurements.csv: the calibration was made of this file, so it fits these rows better than new ones";
+    assert!(found.err.contains(warning) && !found.err.contains("other.csv: the calibration"), "{}", found.err);
+    let out = folder.run_to_success("validate poecal-out/calibration.json measurements.csv --refit device,tool");
     assert!(out.contains("device frame and tool: fitted to these measurements, so training"), "{out}");
 }
 
@@ -126,8 +120,7 @@ fn what_is_held_out_can_be_said() {
     folder.run_to_success(&format!("{of_few} --held-out 0.3"));
     assert_eq!(calibration(&folder, "few/out").accuracy.held_out.unwrap().count, 6);
 
-    let out =
-        folder.run_to_success("calibrate robot.urdf measurements.csv --train-where stage=1 --out stage");
+    let out = folder.run_to_success("calibrate robot.urdf measurements.csv --train-where stage=1 --out stage");
     assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows, at most "), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
@@ -145,8 +138,7 @@ fn what_is_held_out_can_be_said() {
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
         assert_eq!(run.code, 0, "{}", run.err);
         // With --validate no more is held out than that file.
-        let rows =
-            if stated.starts_with("--validate") { "\nheld out      25 rows" } else { "no row was held out" };
+        let rows = if stated.starts_with("--validate") { "\nheld out      25 rows" } else { "no row was held out" };
         assert!(run.out.contains(rows), "{}", run.out);
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --seed 2"));
         let seed = "warning: --seed has no effect on which rows are held out: that is stated\n";
@@ -193,8 +185,7 @@ fn predictions_are_those_of_the_model() {
     assert!(out.lines().nth(1).unwrap().starts_with("row0,"));
     let file = calibration(&folder, "poecal-out");
     let robot = file.robot().unwrap();
-    let data =
-        measurements::read(&[folder.path("measurements.csv")], &robot, &ReadOptions::default()).unwrap().data;
+    let data = measurements::read(&[folder.path("measurements.csv")], &robot, &ReadOptions::default()).unwrap().data;
     for (row, predicted) in numbers(&out, 1).iter().enumerate() {
         let pose = robot.forward_kinematics(data.readings(row));
         let position: [f64; 3] = pose.translation.into();
@@ -204,9 +195,8 @@ fn predictions_are_those_of_the_model() {
         assert!(predicted[6] >= 0.0);
     }
     // In the device's frame, predictions equal the measurements, except for the noise.
-    let out = folder.run_to_success(
-        "predict poecal-out/calibration.json measurements.csv --output-frame device --out seen.csv",
-    );
+    let out = folder
+        .run_to_success("predict poecal-out/calibration.json measurements.csv --output-frame device --out seen.csv");
     assert_eq!(out, "");
     for (row, predicted) in numbers(&folder.read("seen.csv"), 1).iter().enumerate() {
         let measured = data.observations[row].measurement.pose();
@@ -229,9 +219,7 @@ fn the_device_is_the_base_where_that_was_given() {
     folder.run_to_success("calibrate robot.urdf base.csv --device-frame base");
     assert_eq!(
         folder.run_to_success("predict poecal-out/calibration.json base.csv --output-frame device"),
-        folder.run_to_success(
-            "predict poecal-out/calibration.json base.csv --output-frame base --target measured"
-        )
+        folder.run_to_success("predict poecal-out/calibration.json base.csv --output-frame base --target measured")
     );
 }
 
@@ -266,8 +254,7 @@ fn check_says_what_it_understood() {
     assert_eq!(json["files"][0]["separator"], "semicolon");
     assert_eq!(json["sets"], serde_json::json!({"fit": 1, "held_out": 1, "unstated": 0}));
     assert_eq!(json["warnings"].as_array().unwrap().len(), 1);
-    let json: serde_json::Value =
-        serde_json::from_str(&folder.run_to_success("check robot.urdf --json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&folder.run_to_success("check robot.urdf --json")).unwrap();
     assert_eq!((&json["sets"], &json["files"]), (&serde_json::Value::Null, &serde_json::json!([])));
 }
 
@@ -285,11 +272,9 @@ fn convert_gives_the_same_robot_in_another_form() {
     assert_eq!(folder.read("robot.toml"), run.out);
     folder.run_to_success("export poecal-out/calibration.json --out again.urdf");
     folder.run_to_success("export again.urdf --tip-link tool --format toml --out again.toml");
-    for (a, b) in [
-        ("robot.urdf", "robot.toml"),
-        ("poecal-out/calibration.json", "again.urdf"),
-        ("again.urdf", "again.toml"),
-    ] {
+    for (a, b) in
+        [("robot.urdf", "robot.toml"), ("poecal-out/calibration.json", "again.urdf"), ("again.urdf", "again.toml")]
+    {
         let of = |name: &str| numbers(&folder.run_to_success(&format!("predict {name} measurements.csv")), 1);
         for (a, b) in of(a).iter().flatten().zip(of(b).iter().flatten()) {
             assert!((a - b).abs() < 1e-12);
@@ -302,10 +287,7 @@ fn the_schema_in_the_docs_is_the_programs() {
     let printed = Folder::new().run_to_success("schema");
     assert_eq!(printed, CalibrationFile::json_schema());
     let kept = include_str!("../../../../docs/calibration.schema.json");
-    assert!(
-        printed == kept,
-        "write it anew: cargo run -p poecal-cli -- schema > docs/calibration.schema.json"
-    );
+    assert!(printed == kept, "write it anew: cargo run -p poecal-cli -- schema > docs/calibration.schema.json");
 }
 
 #[test]

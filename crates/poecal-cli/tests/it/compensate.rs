@@ -27,9 +27,8 @@ fn folder() -> Folder {
 #[test]
 fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     let folder = folder();
-    let told = folder.run_to_success(
-        "compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check",
-    );
+    let told = folder
+        .run_to_success("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check");
     assert!(told.starts_with("largest change: `joint"), "{told}");
     assert!(told.contains("\n3 rows corrected: without correction the tip would be off by "), "{told}");
     assert!(told.contains("checked from the written numbers: at most "), "{told}");
@@ -38,11 +37,9 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     assert_ne!(written, PROGRAM);
     // By the program's own predictions, of the same readings without the words of the file.
     let plain = |text: &str| {
-        let mut plain =
-            "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n".to_owned();
+        let mut plain = "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n".to_owned();
         for row in text.lines().filter(|it| ["A;", "\"B", " C"].iter().any(|name| it.starts_with(name))) {
-            let cells: Vec<String> =
-                row.replace("B; c", "").split(';').skip(1).take(6).map(clean_cell).collect();
+            let cells: Vec<String> = row.replace("B; c", "").split(';').skip(1).take(6).map(clean_cell).collect();
             writeln!(plain, "{}", cells.join(",")).unwrap();
         }
         plain
@@ -71,9 +68,8 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
 #[test]
 fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     let folder = folder();
-    let json = folder.run_to_success(
-        "compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json",
-    );
+    let json = folder
+        .run_to_success("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json");
     let found: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&found["rows"], &found["joints"][5]), (&3.into(), &"joint6".into()));
     assert!(found["left_m"]["value"].as_f64().unwrap() < 1e-9);
@@ -82,14 +78,12 @@ fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
         folder.run_to_success("compensate --max-correction 20deg results/calibration.json program.csv"),
         written
     );
-    let piped =
-        folder.run_with_input("compensate --max-correction 20deg results/calibration.json -", PROGRAM);
+    let piped = folder.run_with_input("compensate --max-correction 20deg results/calibration.json -", PROGRAM);
     assert_eq!((piped.code, piped.out), (0, written));
     // Without a calibration's findings there is nothing to correct.
     folder.write("same.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
-    let other = folder.run_to_success(
-        "compensate --max-correction 20deg results/calibration.json same.csv --model calibrated",
-    );
+    let other =
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json same.csv --model calibrated");
     assert_eq!(other.lines().count(), 2);
 }
 
@@ -118,13 +112,11 @@ fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
         assert!(run.err.contains(sentence), "{arguments}: {}", run.err);
     }
-    let run = folder.run(
-        "compensate --max-correction 20deg results/calibration.json program.csv --out program.csv --force",
-    );
+    let run =
+        folder.run("compensate --max-correction 20deg results/calibration.json program.csv --out program.csv --force");
     assert!(run.code == 2 && run.err.contains("input"), "{}", run.err);
-    let run = folder.run(
-        "compensate --max-correction 20deg results/calibration.json word.csv --columns sum.toml --out out.csv",
-    );
+    let run = folder
+        .run("compensate --max-correction 20deg results/calibration.json word.csv --columns sum.toml --out out.csv");
     assert!(run.code == 2 && run.err.contains("`joint3` is a constant by the mapping"), "{}", run.err);
     assert_eq!(folder.listing(), before);
 }
@@ -139,8 +131,7 @@ fn poses_out_of_reach_are_listed_or_come_near() {
         writeln!(text, "0.3,0.4,{},0.1,0.5,0.2", 0.1 * f64::from(step) - 3.0).unwrap();
     }
     folder.write("edge.csv", &text);
-    let refused =
-        folder.run("compensate --max-correction 20deg results/calibration.json edge.csv --out out.csv");
+    let refused = folder.run("compensate --max-correction 20deg results/calibration.json edge.csv --out out.csv");
     let kept = folder.read("out.csv");
     if refused.code != 0 {
         assert_eq!(refused.code, 1);
@@ -149,9 +140,8 @@ fn poses_out_of_reach_are_listed_or_come_near() {
         let at = line.parse::<usize>().unwrap() - 1;
         assert_eq!(kept.lines().nth(at), text.lines().nth(at));
     }
-    let near = folder.run(
-        "compensate --max-correction 20deg results/calibration.json edge.csv --out out.csv --nearest --force",
-    );
+    let near = folder
+        .run("compensate --max-correction 20deg results/calibration.json edge.csv --out out.csv --nearest --force");
     assert_eq!(near.code, 0, "{}{}", near.out, near.err);
     assert_eq!(refused.code != 0, near.err.contains("cannot be reached by the actual robot"), "{}", near.err);
     assert_eq!(folder.read("out.csv").lines().count(), text.lines().count());
@@ -164,15 +154,11 @@ const SCRIPT: &[u8] = b"# Gr\xfc\xdfe\r\ndef p():\r\n  movej([0.1, 0.2, 0.3, 0.4
 fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
     let folder = folder();
     std::fs::write(folder.path("p.script"), SCRIPT).unwrap();
-    let run = folder
-        .run("compensate --max-correction 20deg results/calibration.json p.script --out out.script --check");
+    let run =
+        folder.run("compensate --max-correction 20deg results/calibration.json p.script --out out.script --check");
     println!("{}{}", run.out, run.err);
     assert_eq!(run.code, 1);
-    assert!(
-        run.out.contains("\n1 target corrected: without correction the tip would be off by "),
-        "{}",
-        run.out
-    );
+    assert!(run.out.contains("\n1 target corrected: without correction the tip would be off by "), "{}", run.out);
     assert!(run.out.contains("checked from the written numbers: at most "), "{}", run.out);
     let row = "  line 4: wp: the tool is not known: state it by --tool-data (motion on line 5)\n";
     assert!(run.out.contains(&format!("1 target is left as it is:\n{row}")), "{}", run.out);
@@ -185,9 +171,8 @@ fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
     assert_ne!(written, SCRIPT);
     let end = |text: &[u8]| text[text.len() - 60..].to_vec();
     assert_eq!(end(&written), end(SCRIPT));
-    let json = folder.run(
-        "compensate --max-correction 20deg results/calibration.json p.script --out out.script --json --force",
-    );
+    let json = folder
+        .run("compensate --max-correction 20deg results/calibration.json p.script --out out.script --json --force");
     let found: serde_json::Value = serde_json::from_str(&json.out).unwrap();
     assert_eq!((json.code, &found["corrected"], &found["rows"]), (1, &1.into(), &1.into()));
     assert_eq!((&found["listed"][0]["line"], &found["language"]), (&4.into(), &"urscript".into()));
@@ -207,10 +192,7 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
             "p.script --tool-data 0,0,0.1",
             "error: found --tool-data 0,0,0.1, expected x,y,z,rx,ry,rz as URScript writes poses (metres",
         ),
-        (
-            "p.script --tool-data a=0,0,0,0,0,x",
-            "error: found --tool-data 0,0,0,0,0,x, expected x,y,z,rx,ry,rz",
-        ),
+        ("p.script --tool-data a=0,0,0,0,0,x", "error: found --tool-data 0,0,0,0,0,x, expected x,y,z,rx,ry,rz"),
         (
             "p.script --tool-data 1=0,0,0,0,0,0 --tool-data 1=0,0,1,0,0,0",
             "error: found --tool-data 1=0,0,1,0,0,0 for one that is stated already",
@@ -224,16 +206,12 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
         ("p.script --language logo", "error: invalid value 'logo' for '--language <LANGUAGE>'"),
         ("empty.src", "error: empty.src: the file is empty, expected a robot program"),
         ("wide.src", "error: wide.src: found zero bytes, expected a robot program as text"),
-        (
-            "deep.script",
-            "error: deep.script:201: found more than 200 levels in blocks in each other, expected",
-        ),
+        ("deep.script", "error: deep.script:201: found more than 200 levels in blocks in each other, expected"),
         ("nowhere.src", "error: nowhere.src: found no such file, expected a robot program"),
         ("results --language krl", "error: results: found a directory, expected a robot program"),
     ] {
-        let run = folder.run(&format!(
-            "compensate --max-correction 20deg results/calibration.json {arguments} --out out.txt"
-        ));
+        let run = folder
+            .run(&format!("compensate --max-correction 20deg results/calibration.json {arguments} --out out.txt"));
         println!("{}", run.err.trim_end());
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
         assert!(run.err.contains(sentence), "{arguments}: {}", run.err);
@@ -245,40 +223,28 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
 fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
     let folder = folder();
     folder.write("rows.dat", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
-    let table = folder
-        .run_to_success("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
+    let table =
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
     assert_eq!(table.lines().count(), 2);
     let program = "DEF p()\nPTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; {A1 1}\nEND\n";
     folder.write("p.txt", program);
-    let written = folder
-        .run_to_success("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
+    let written =
+        folder.run_to_success("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
     println!("{written}");
-    assert!(
-        written.starts_with("DEF p()\nPTP {A1 ")
-            && written.ends_with("} ; {A1 1}\nEND\n")
-            && written != program
-    );
-    let piped = folder.run_with_input(
-        "compensate --max-correction 20deg results/calibration.json - --language krl",
-        program,
-    );
+    assert!(written.starts_with("DEF p()\nPTP {A1 ") && written.ends_with("} ; {A1 1}\nEND\n") && written != program);
+    let piped =
+        folder.run_with_input("compensate --max-correction 20deg results/calibration.json - --language krl", program);
     assert_eq!((piped.code, piped.out), (0, written));
     folder.write("p.src", program);
-    folder.run_to_success(
-        "compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet",
-    );
+    folder.run_to_success("compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet");
 }
 
 #[test]
 fn a_straight_wrist_is_corrected_in_place_and_what_takes_more_is_listed() {
     let folder = folder();
-    folder.write(
-        "home.csv",
-        "joint1,joint2,joint3,joint4,joint5,joint6\n0,0,0,0,0,0\n0.3,0.4,-0.5,0.1,0.9,0.2\n",
-    );
+    folder.write("home.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0,0,0,0,0,0\n0.3,0.4,-0.5,0.1,0.9,0.2\n");
     let before = folder.listing();
-    let dry =
-        folder.run("compensate results/calibration.json home.csv --max-correction 4deg --dry-run --json");
+    let dry = folder.run("compensate results/calibration.json home.csv --max-correction 4deg --dry-run --json");
     assert_eq!(folder.listing(), before);
     let found: serde_json::Value = serde_json::from_str(&dry.out).unwrap();
     let (rows, listed) = (found["targets"].as_array().unwrap(), found["listed"].as_array().unwrap());
@@ -288,30 +254,25 @@ fn a_straight_wrist_is_corrected_in_place_and_what_takes_more_is_listed() {
         assert!(row["change"].as_f64().unwrap() < 0.1 && row["left_m"].as_f64().unwrap() < 1e-9);
     }
     // Nothing as small as this can be corrected.
-    let none = folder
-        .run("compensate results/calibration.json home.csv --max-correction 0.001deg --out out.csv --check");
+    let none =
+        folder.run("compensate results/calibration.json home.csv --max-correction 0.001deg --out out.csv --check");
     println!("{}{}", none.out, none.err);
     assert_eq!(none.code, 1);
     assert!(
-        none.out
-            .starts_with("0 rows corrected\n2 targets are left as they are:\n  line 2: row: joint `joint"),
+        none.out.starts_with("0 rows corrected\n2 targets are left as they are:\n  line 2: row: joint `joint"),
         "{}",
         none.out
     );
     assert_eq!(folder.read("out.csv"), folder.read("home.csv"));
-    for (words, sentence) in [
-        ("0deg", "expected an angle and a length above 0"),
-        ("2", "without a unit"),
-        ("x", "expected a number"),
-    ] {
-        let run =
-            folder.run(&format!("compensate results/calibration.json home.csv --max-correction {words}"));
+    for (words, sentence) in
+        [("0deg", "expected an angle and a length above 0"), ("2", "without a unit"), ("x", "expected a number")]
+    {
+        let run = folder.run(&format!("compensate results/calibration.json home.csv --max-correction {words}"));
         assert!(run.code == 2 && run.err.contains(sentence), "{}", run.err);
     }
     let other = folder.run("compensate results/calibration.json weld.jbi");
     assert!(
-        other.code == 2
-            && other.err.contains("weld.jbi: found a program of Yaskawa (JBI) by the end of its name"),
+        other.code == 2 && other.err.contains("weld.jbi: found a program of Yaskawa (JBI) by the end of its name"),
         "{}",
         other.err
     );

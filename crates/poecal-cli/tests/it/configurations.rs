@@ -21,10 +21,7 @@ fn words(command: &str, readings: &str, more: &str) -> String {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let (model, howto) = (examples.join("elbow/robot.urdf"), examples.join("howto"));
     let [corners, lens] = ["corners.csv", "lens.csv"].map(|name| howto.join(name).display().to_string());
-    format!(
-        "{command} {} {readings} {corners} --camera {lens} --markers chessboard:6x5:40mm {more}",
-        model.display()
-    )
+    format!("{command} {} {readings} {corners} --camera {lens} --markers chessboard:6x5:40mm {more}", model.display())
 }
 
 /// Readings in radians in all forms, beside the pictures.
@@ -56,10 +53,7 @@ fn a_file_for_each_picture_is_the_same_as_a_table() {
         let run = folder.run(&words("calibrate", readings, &format!("--out {out}")));
         println!("{}", run.err);
         assert_eq!(run.code, 0, "{}", run.err);
-        assert!(
-            run.err.contains("note: the camera is on the last link")
-                && !run.err.contains("warning: the camera")
-        );
+        assert!(run.err.contains("note: the camera is on the last link") && !run.err.contains("warning: the camera"));
         serde_json::from_str(&folder.read(&format!("{out}/calibration.json"))).unwrap()
     };
     let (of_folder, of_table) = (calibrated("session", "one"), calibrated("table.csv", "other"));
@@ -83,8 +77,8 @@ fn joints_go_by_name_and_unit_where_files_have_them() {
         let text = readings.iter().map(|it| it.to_radians().to_string()).collect::<Vec<_>>().join(", ");
         fs::write(folder.path(&format!("plain/{}", at + 1)), text).unwrap();
     }
-    let [named, plain] = ["named", "plain"]
-        .map(|it| folder.run_to_success(&words("plan", &format!("--rows {it} --rows"), "--json")));
+    let [named, plain] =
+        ["named", "plain"].map(|it| folder.run_to_success(&words("plan", &format!("--rows {it} --rows"), "--json")));
     let of = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap()["expected_error"].clone();
     let mean = |text: &str| of(text)["position_mean_mm"].as_f64().unwrap();
     println!("{} and {}", mean(&named), mean(&plain));

@@ -73,24 +73,15 @@ fn tables_are_read_and_written_as_the_controller_counts() {
     let table = |names: &str, rows: &[Vec<f64>]| {
         format!("{names}\n{}\n", rows.iter().map(|it| line(it)).collect::<Vec<_>>().join("\n"))
     };
-    folder.write(
-        "plain.csv",
-        table("joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]", &q),
-    );
-    folder.write(
-        "counted.csv",
-        table("A1,A2,A3,A4,A5,A6", &q.iter().map(|it| count_values(it)).collect::<Vec<_>>()),
-    );
+    folder.write("plain.csv", table("joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]", &q));
+    folder.write("counted.csv", table("A1,A2,A3,A4,A5,A6", &q.iter().map(|it| count_values(it)).collect::<Vec<_>>()));
     let meant = numbers(&folder.run_to_success("predict plain/calibration.json plain.csv"), 0);
     let found = numbers(&folder.run_to_success("predict results/calibration.json counted.csv"), 0);
     println!("predictions differ by up to {:.1e}", largest_difference(&found, &meant));
     assert!(largest_difference(&found, &meant) < 1e-9);
-    let plain = numbers(
-        &folder.run_to_success("compensate --max-correction 20deg plain/calibration.json plain.csv"),
-        0,
-    );
-    let made =
-        folder.run_to_success("compensate --max-correction 20deg results/calibration.json counted.csv");
+    let plain =
+        numbers(&folder.run_to_success("compensate --max-correction 20deg plain/calibration.json plain.csv"), 0);
+    let made = folder.run_to_success("compensate --max-correction 20deg results/calibration.json counted.csv");
     assert!(made.starts_with("A1,A2,A3,A4,A5,A6\n"), "{made}");
     let back: Vec<Vec<f64>> = numbers(&made, 0).iter().map(|it| uncount_values(it)).collect();
     println!("commands differ by up to {:.1e} deg", largest_difference(&back, &plain));
@@ -140,10 +131,7 @@ fn joint_targets_are_as_the_controller_counts_and_poses_as_they_were() {
             let apart = largest_difference(&found, &plain);
             println!("{language}: commands differ by up to {apart:.1e} deg");
             // Nine decimals of a radian, six of a degree.
-            assert!(
-                plain.len() == 10 && apart < 3e-6 && largest_difference(&found, &q) > 1e-3,
-                "{language}: {apart}"
-            );
+            assert!(plain.len() == 10 && apart < 3e-6 && largest_difference(&found, &q) > 1e-3, "{language}: {apart}");
         }
     }
 }
@@ -175,8 +163,7 @@ fn poses_are_corrected_in_the_configuration_to_which_the_joints_before_lead() {
 
 /// A program of joint targets, numbers in degrees.
 fn program(language: &str, rows: &[Vec<f64>]) -> String {
-    let cells =
-        |row: &[f64], scale: f64| row.iter().map(|it| format!("{:.9}", it * scale)).collect::<Vec<_>>();
+    let cells = |row: &[f64], scale: f64| row.iter().map(|it| format!("{:.9}", it * scale)).collect::<Vec<_>>();
     match language {
         "script" => {
             let line = |row: &Vec<f64>| format!("movej([{}])\n", cells(row, 1_f64.to_radians()).join(", "));
@@ -184,19 +171,14 @@ fn program(language: &str, rows: &[Vec<f64>]) -> String {
         }
         "src" => {
             let line = |row: &Vec<f64>| {
-                let axes =
-                    cells(row, 1.0).iter().zip(1..).map(|(it, k)| format!("A{k} {it}")).collect::<Vec<_>>();
+                let axes = cells(row, 1.0).iter().zip(1..).map(|(it, k)| format!("A{k} {it}")).collect::<Vec<_>>();
                 format!("PTP {{{}}}\n", axes.join(", "))
             };
             format!("DEF job()\n{}END\n", rows.iter().map(line).collect::<String>())
         }
         _ => {
             let place = |(row, k): (&Vec<f64>, usize)| {
-                let axes = cells(row, 1.0)
-                    .iter()
-                    .zip(1..)
-                    .map(|(it, k)| format!("J{k}= {it} deg"))
-                    .collect::<Vec<_>>();
+                let axes = cells(row, 1.0).iter().zip(1..).map(|(it, k)| format!("J{k}= {it} deg")).collect::<Vec<_>>();
                 format!("P[{k}]{{\n GP1:\n UF : 0, UT : 1,\n {}\n}};\n", axes.join(",\n "))
             };
             let lines = (1..=rows.len()).map(|k| format!("{k}:J P[{k}] 100% FINE ;\n")).collect::<String>();
@@ -209,21 +191,13 @@ fn program(language: &str, rows: &[Vec<f64>]) -> String {
 /// The joint targets of such a program, degrees.
 fn joints(language: &str, text: &str) -> Vec<Vec<f64>> {
     let rows: Vec<String> = match language {
-        "script" | "src" => {
-            text.lines().filter(|it| it.contains('[') || it.contains('{')).map(str::to_owned).collect()
+        "script" | "src" => text.lines().filter(|it| it.contains('[') || it.contains('{')).map(str::to_owned).collect(),
+        _ => {
+            text.split("/POS").nth(1).unwrap().split("};").filter(|it| it.contains("J1=")).map(str::to_owned).collect()
         }
-        _ => text
-            .split("/POS")
-            .nth(1)
-            .unwrap()
-            .split("};")
-            .filter(|it| it.contains("J1="))
-            .map(str::to_owned)
-            .collect(),
     };
     let numbers = |row: &String| -> Vec<f64> {
-        let row =
-            if language == "ls" { row.split("UT : 1,").nth(1).unwrap().to_owned() } else { row.clone() };
+        let row = if language == "ls" { row.split("UT : 1,").nth(1).unwrap().to_owned() } else { row.clone() };
         let words = row.split(|c: char| c.is_whitespace() || ",[]{}()=".contains(c));
         let all: Vec<f64> = words.filter_map(|it| it.parse().ok()).collect();
         let scale = if language == "script" { 1_f64.to_degrees() } else { 1.0 };
@@ -239,14 +213,13 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     assert_eq!(kept["controller"]["third_axis"], "level");
     folder.write("job.ls", program("ls", &targets().iter().map(|it| from_level(it)).collect::<Vec<_>>()));
     // The calibration whose readings are the model's, by a driver: here J3 is stated to count from the level.
-    let stated = folder
-        .run_to_success("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
+    let stated =
+        folder.run_to_success("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
     let by_map = folder.run_to_success("compensate --max-correction 20deg results/calibration.json job.ls");
     let apart = largest_difference(&joints("ls", &stated), &joints("ls", &by_map));
     assert!(apart < 3e-6, "{apart}");
     // The same mapping again has the same result.
-    let again =
-        folder.run_to_success("validate results/calibration.json controller.csv --columns map.toml --json");
+    let again = folder.run_to_success("validate results/calibration.json controller.csv --columns map.toml --json");
     let without = folder.run_to_success("validate results/calibration.json controller.csv --json");
     assert_eq!(again.replace(" --columns map.toml", ""), without);
     // Rows in which joint 2 hardly moves do not determine it.
@@ -281,11 +254,8 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     }
     assert_eq!(folder.listing(), before);
     assert!(
-        joints(
-            "ls",
-            &folder.run_to_success("compensate --max-correction 20deg narrow.json job.ls --third-axis arm")
-        )
-        .len()
+        joints("ls", &folder.run_to_success("compensate --max-correction 20deg narrow.json job.ls --third-axis arm"))
+            .len()
             == 10
     );
 }
@@ -296,8 +266,7 @@ fn a_third_axis_from_the_level_may_have_a_sign_and_an_offset() {
     let numbered = "joint1 = \"A1\"\njoint4 = \"A4\"\njoint5 = \"A5\"\njoint6 = \"A6\"\n";
     let axes = "joint2 = { column = \"A2\", offset = 7 }\njoint3 = { columns = { A3 = -1 }, offset = 5 }\n";
     folder.write("level.toml", format!("{LEVEL}[joints]\n{numbered}{axes}"));
-    let sums =
-        "joint2 = { column = \"A2\", offset = 7 }\njoint3 = { columns = { A2 = 1, A3 = -1 }, offset = 12 }\n";
+    let sums = "joint2 = { column = \"A2\", offset = 7 }\njoint3 = { columns = { A2 = 1, A3 = -1 }, offset = 12 }\n";
     folder.write("sums.toml", format!("[units]\nangle = \"deg\"\n[joints]\n{numbered}{sums}"));
     let plain = folder.read("controller.csv");
     let turned = plain.lines().enumerate().map(|(at, row)| {
@@ -315,8 +284,7 @@ fn a_third_axis_from_the_level_may_have_a_sign_and_an_offset() {
     };
     let (level, sums) = (kept("level"), kept("sums"));
     assert_eq!(level["controller"]["readings"], sums["controller"]["readings"]);
-    let rms =
-        |it: &serde_json::Value| it["accuracy"]["training"]["calibrated"]["position_mm"]["rms"].as_f64();
+    let rms = |it: &serde_json::Value| it["accuracy"]["training"]["calibrated"]["position_mm"]["rms"].as_f64();
     println!("{:?} {:?} mm", rms(&level), rms(&sums));
     // The columns are summed in another order, which rounds otherwise.
     assert!((rms(&level).unwrap() - rms(&sums).unwrap()).abs() < 1e-9);
@@ -368,10 +336,7 @@ fn a_file_whose_controller_is_of_another_robot_is_refused() {
             let run = folder.run(command);
             println!("{command}: {}", run.err.trim_end());
             // An export needs no units.
-            assert!(
-                run.err.contains(sentence) && run.code == 2 || sentence == "cubit" && run.code == 0,
-                "{command}"
-            );
+            assert!(run.err.contains(sentence) && run.code == 2 || sentence == "cubit" && run.code == 0, "{command}");
         }
     }
 }
@@ -401,9 +366,8 @@ fn exports_say_what_the_controller_counts() {
 fn sums_that_cannot_be_taken_apart_are_predicted_and_not_corrected() {
     let folder = folder_with_both(MAP, count_values);
     folder.write("constant.toml", MAP.replace("joint6 = \"A6\"", "joint6 = { value = 10 }"));
-    let run = folder.run(
-        "calibrate robot.urdf controller.csv --columns constant.toml --out fixed --corrections off --quiet",
-    );
+    let run =
+        folder.run("calibrate robot.urdf controller.csv --columns constant.toml --out fixed --corrections off --quiet");
     assert!(run.code < 2, "{}", run.err);
     folder.write("counted.csv", format!("A1,A2,A3,A4,A5,A6\n{}\n", line(&count_values(&targets()[0]))));
     assert_eq!(numbers(&folder.run_to_success("predict fixed/calibration.json counted.csv"), 0).len(), 1);
@@ -420,10 +384,7 @@ fn sums_that_cannot_be_taken_apart_are_predicted_and_not_corrected() {
                 .replace("[units]", "third_axis = \"level\"\n[units]"),
             "beside a constant for joint `joint3`",
         ),
-        (
-            MAP.replace("joint4 = \"A4\"", "joint4 = { value = 1, offset = 2 }"),
-            "found `offset` beside `value`",
-        ),
+        (MAP.replace("joint4 = \"A4\"", "joint4 = { value = 1, offset = 2 }"), "found `offset` beside `value`"),
     ] {
         folder.write("wrong.toml", &map);
         let run = folder.run("calibrate robot.urdf controller.csv --columns wrong.toml --out other");

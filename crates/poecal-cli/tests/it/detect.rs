@@ -31,13 +31,8 @@ fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved
         size_px: Some([960, 600]),
         ..poecal_model::camera::Lens::pinhole([800.0; 2], [479.5, 299.5])
     };
-    let session = Simulation {
-        count,
-        seed: 7,
-        error_rotation_rad: 3e-3,
-        error_position_m: 1e-3,
-        ..Simulation::default()
-    };
+    let session =
+        Simulation { count, seed: 7, error_rotation_rad: 3e-3, error_position_m: 1e-3, ..Simulation::default() };
     let simulated = PictureSimulation {
         lens,
         board,
@@ -46,12 +41,8 @@ fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved
     };
     let made = simulated.run(&model.robot).unwrap();
     let layout = BoardLayout::new(&spec.parse().unwrap());
-    let camera = RenderCamera {
-        size: [960, 600],
-        focal_px: lens.focal_px,
-        centre_px: lens.centre_px,
-        distortion: [0.0; 2],
-    };
+    let camera =
+        RenderCamera { size: [960, 600], focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [0.0; 2] };
     let names = made.data.reading_names().join("[rad],");
     let mut table = format!("image,{names}[rad]\n");
     fs::create_dir(folder.path("pictures")).unwrap();
@@ -127,9 +118,8 @@ fn a_board_in_a_file_is_the_one_in_words() {
     println!("{}", read.err);
     assert!(read.err.contains(&format!("cal_data.yaml: read the board `{SPEC}` (industrial_calibration)")));
     assert_eq!(folder.read("read.csv"), folder.read("stated.csv"));
-    let refused = folder.run(&format!(
-        "calibrate robot.urdf cal_data.yaml --camera lens.csv --markers {SPEC} --out results --verbose"
-    ));
+    let refused = folder
+        .run(&format!("calibrate robot.urdf cal_data.yaml --camera lens.csv --markers {SPEC} --out results --verbose"));
     println!("{}", refused.err);
     assert!(refused.code == 2 && refused.err.contains("expected the joint readings of each picture"));
     assert!(!folder.path("results").exists());
@@ -154,16 +144,8 @@ fn grids_of_dots_and_of_tags_calibrate_an_arm() {
         assert_eq!(found.code, 0, "{}", found.err);
         println!("{}", found.err);
         // A grid that the border of a picture cuts is left out.
-        let pictures: usize = found
-            .err
-            .split(" of 24 pictures, to")
-            .next()
-            .unwrap()
-            .rsplit(' ')
-            .next()
-            .unwrap()
-            .parse()
-            .unwrap();
+        let pictures: usize =
+            found.err.split(" of 24 pictures, to").next().unwrap().rsplit(' ').next().unwrap().parse().unwrap();
         assert!(pictures >= 20, "{}", found.err);
         let words = format!(
             "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results --verbose"
@@ -187,12 +169,8 @@ fn loose_tags_calibrate_an_arm_each_at_a_place_of_its_own() {
 
 #[test]
 fn the_table_has_the_points_where_they_are() {
-    let camera = RenderCamera {
-        size: [960, 600],
-        focal_px: [800.0; 2],
-        centre_px: [479.5, 299.5],
-        distortion: [-0.1, 0.0],
-    };
+    let camera =
+        RenderCamera { size: [960, 600], focal_px: [800.0; 2], centre_px: [479.5, 299.5], distortion: [-0.1, 0.0] };
     let draw = RandomScenes {
         camera,
         square_px: [38.0, 42.0],
@@ -200,9 +178,7 @@ fn the_table_has_the_points_where_they_are() {
         covered_each: 0,
         ..RandomScenes::default()
     };
-    for spec in
-        ["circles:9x6:30mm", "circles:4x7:20mm:asymmetric", "aprilgrid:4x3:40mm:0.3", "tags:36h11:50mm"]
-    {
+    for spec in ["circles:9x6:30mm", "circles:4x7:20mm:asymmetric", "aprilgrid:4x3:40mm:0.3", "tags:36h11:50mm"] {
         let layout = BoardLayout::new(&spec.parse().unwrap());
         let drawn = draw.scene(&layout, 3, 2);
         let folder = Folder::new();
@@ -240,10 +216,7 @@ fn both_programs_have_the_points_of_a_board_at_the_same_places() {
     ] {
         let points = BoardLayout::new(&spec.parse().unwrap()).points();
         let board = read_boards(spec).unwrap().remove(0);
-        assert_eq!(
-            points.iter().map(|it| &it.name).collect::<Vec<_>>(),
-            board.names.iter().collect::<Vec<_>>()
-        );
+        assert_eq!(points.iter().map(|it| &it.name).collect::<Vec<_>>(), board.names.iter().collect::<Vec<_>>());
         for (one, other) in points.iter().zip(&board.points) {
             let off = (one.place_m[0] - other.x).hypot(one.place_m[1] - other.y);
             assert!(off < 1e-12, "{spec}: {} is {off} m off", one.name);
@@ -276,9 +249,7 @@ fn a_board_that_moved_once_is_named() {
 fn the_board_that_a_message_names_is_found() {
     let folder = Folder::new();
     session(&folder, 4, usize::MAX);
-    for wrong in
-        ["charuco:5x7:36mm:26mm:DICT_4X4_50", "charuco:7x5:36mm:26mm:DICT_6X6_250", "tags:36h11:30mm"]
-    {
+    for wrong in ["charuco:5x7:36mm:26mm:DICT_4X4_50", "charuco:7x5:36mm:26mm:DICT_6X6_250", "tags:36h11:30mm"] {
         let said = folder.run(&format!("detect pictures --board {wrong} --out c.csv --force"));
         let (_, named) = said.err.split_once("take --board ").unwrap_or_else(|| panic!("{}", said.err));
         let taken = folder.run(&format!("detect pictures --board {} --out c.csv --force", named.trim_end()));
@@ -309,10 +280,7 @@ fn what_is_wrong_with_pictures_is_said_in_one_line_and_nothing_is_written() {
         ("detect gone.png --board BOARD --out c.csv", "gone.png: cannot be read"),
         ("detect text.png --board BOARD --out c.csv", "text.png: found no picture, expected PNG or JPEG"),
         ("detect small.png --board BOARD --out c.csv", "in none of 1 picture (small.png: "),
-        (
-            "detect small.png pictures --board BOARD --out c.csv",
-            "expected one size of all pictures of a camera",
-        ),
+        ("detect small.png pictures --board BOARD --out c.csv", "expected one size of all pictures of a camera"),
         ("detect pictures other/0.png --board BOARD --out c.csv", "found two pictures with the name `0.png`"),
         (
             "detect pictures --board charuco:5x7:36mm:26mm:DICT_4X4_50 --out c.csv",
@@ -329,10 +297,7 @@ fn what_is_wrong_with_pictures_is_said_in_one_line_and_nothing_is_written() {
             "of the other kind, or with one dot more or fewer each way: check the board",
         ),
         ("detect pictures --board tags:36h11:30mm --out c.csv", "take --board tags:DICT_4X4_50:30mm"),
-        (
-            "detect pictures --board aprilgrid:6x6:88mm --out c.csv",
-            "expected aprilgrid:COLSxROWS:SIZE:SPACING",
-        ),
+        ("detect pictures --board aprilgrid:6x6:88mm --out c.csv", "expected aprilgrid:COLSxROWS:SIZE:SPACING"),
     ] {
         let run = folder.run(&words.replace("BOARD", SPEC));
         println!("{}", run.err);

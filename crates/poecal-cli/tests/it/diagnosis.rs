@@ -25,9 +25,9 @@ fn exchanged_columns_are_named_with_evidence() {
     let run = folder.run("calibrate robot.urdf measurements.csv");
     println!("{}", run.out);
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.starts_with(
-        "verdict do not use: exchanging the readings of joint4 and joint5 lowers the registered"
-    ));
+    assert!(
+        words.starts_with("verdict do not use: exchanging the readings of joint4 and joint5 lowers the registered")
+    );
     assert!(words.contains("(RMS): check the order of the joint columns") && run.code == 1);
     let file = calibration(&folder, "poecal-out");
     assert_eq!(file.diagnosis.len(), 1);
@@ -73,10 +73,7 @@ fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapp
     assert!(statement.contains(
         "a mapping (--columns) with `form = \"intrinsic_zyx\"` and `columns = [\"roll\", \"pitch\", \"yaw\"]` under `[orientation]`"
     ));
-    folder.write(
-        "map.toml",
-        "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"roll\", \"pitch\", \"yaw\"]\n",
-    );
+    folder.write("map.toml", "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"roll\", \"pitch\", \"yaw\"]\n");
     assert!(!folder.run_to_success("check robot.urdf kuka.csv --columns map.toml").contains("diagnosis"));
 }
 
@@ -175,11 +172,8 @@ fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them(
     println!("{statement}");
     assert!(statement.contains("per cent of the joints' ranges, -100 to 100"), "{statement}");
     // The lines that it names, in a mapping.
-    let lines = statement
-        .split('`')
-        .filter(|it| it.starts_with("joint") || it.starts_with('['))
-        .collect::<Vec<_>>()
-        .join("\n");
+    let lines =
+        statement.split('`').filter(|it| it.starts_with("joint") || it.starts_with('[')).collect::<Vec<_>>().join("\n");
     folder.write("map.toml", lines);
     let told = folder.run_to_success("calibrate robot.urdf called.csv --columns map.toml --out results");
     assert!(told.starts_with("verdict       good"), "{told}");

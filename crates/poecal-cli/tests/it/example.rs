@@ -26,8 +26,7 @@ fn both_models_of_the_example_are_the_same_robot() {
         let path = root().join("examples/elbow").join(name);
         poecal_results::model::Model::read(path, &Default::default()).unwrap().robot
     };
-    let difference =
-        poecal_formats::proof::Difference::from_robots(&read("robot.urdf"), &read("robot.toml"), 1000);
+    let difference = poecal_formats::proof::Difference::from_robots(&read("robot.urdf"), &read("robot.toml"), 1000);
     // Rounding of the two texts' numbers along six joints.
     assert!(difference.is_within(1e-14, 1e-14), "{difference:?}");
 }
@@ -46,8 +45,7 @@ fn a_simulated_session_without_noise_is_calibrated_exactly() {
             at("measurements.csv"),
             at("held_out.csv")
         );
-        let calibration: serde_json::Value =
-            serde_json::from_str(&output_of(&words, &folder.path("out"))).unwrap();
+        let calibration: serde_json::Value = serde_json::from_str(&output_of(&words, &folder.path("out"))).unwrap();
         let held_out = &calibration["accuracy"]["held_out"];
         assert_eq!(held_out["count"], 20);
         assert!(held_out["calibrated"]["position_mm"]["max"].as_f64().unwrap() < 1e-6, "{held_out}");
@@ -62,10 +60,7 @@ fn the_truth_names_the_robot_that_was_measured() {
     output_of("simulate examples/elbow/robot.toml --device-frame base --noise 0.01deg,0.05mm", &session);
     let text = fs::read_to_string(session.join("truth.json")).unwrap();
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(
-        truth["measurement_frame"]["base_from_device"]["position_m"],
-        serde_json::json!([0.0, 0.0, 0.0])
-    );
+    assert_eq!(truth["measurement_frame"]["base_from_device"]["position_m"], serde_json::json!([0.0, 0.0, 0.0]));
     let model = poecal_results::model::Model::read(session.join("actual.urdf"), &Default::default()).unwrap();
     let screw = model.robot.joints[3].screw.v();
     for axis in 0..3 {

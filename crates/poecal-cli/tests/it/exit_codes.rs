@@ -32,19 +32,13 @@ fn a_calibration_that_should_not_be_used_is_written_and_ends_with_1() {
         assert_eq!(verdict.level, poecal_calibrate::Level::DoNotUse);
     }
     let run = folder.run("calibrate robot.urdf exchanged.csv --force");
-    assert!(
-        run.out.starts_with("verdict       do not use: exchanging the readings of joint4 and"),
-        "{}",
-        run.out
-    );
+    assert!(run.out.starts_with("verdict       do not use: exchanging the readings of joint4 and"), "{}", run.out);
 }
 
 #[test]
 fn a_fit_that_did_not_converge_is_written_and_ends_with_1() {
     let folder = session(SessionKind::POINT);
-    folder.run_to_success(
-        "simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far",
-    );
+    folder.run_to_success("simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far");
     // Full steps of free screws and offsets, with hardly more numbers than unknowns, from far away.
     let run = folder.run(
         "calibrate far/nominal.urdf far/measurements.csv --formulation screw-offsets --method gauss-newton --robust off --held-out 0",
@@ -87,8 +81,7 @@ fn a_level_of_vector_instructions_that_is_not_here_is_refused() {
     for level in ["avx1024", "AVX2"] {
         let run = folder.run_with_variable("calibrate robot.urdf measurements.csv", "POECAL_SIMD", level);
         assert_eq!(run.code, 2, "{level}: {}{}", run.out, run.err);
-        let start =
-            format!("error: POECAL_SIMD: found `{level}`, expected one of the levels of this machine (");
+        let start = format!("error: POECAL_SIMD: found `{level}`, expected one of the levels of this machine (");
         assert!(run.err.starts_with(&start) && run.err.contains("plain"), "{}", run.err);
     }
     assert_eq!(folder.listing(), before);

@@ -15,9 +15,7 @@ fn line(count: usize) -> Folder {
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.write("station.toml", STATION);
     for robot in 0..count {
-        folder.run_to_success(&format!(
-            "simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"
-        ));
+        folder.run_to_success(&format!("simulate robot.urdf --kind point --count 30 --seed {robot} --out made{robot}"));
         let text = folder.read(&format!("made{robot}/measurements.csv"));
         std::fs::create_dir_all(folder.path(&format!("inbox/SN{robot}"))).unwrap();
         folder.write(&format!("inbox/SN{robot}/2026-01-0{}.csv", robot + 1), text);
@@ -142,8 +140,7 @@ fn the_prior_of_a_line_is_written_and_used() {
     folder.write("station.toml", format!("prior = \"prior.toml\"\n{STATION}"));
     assert_eq!(folder.run("fleet station.toml").code, 0);
     let rows = ledger(&folder);
-    let own =
-        |serial: &str| rows.iter().find(|row| row.contains(&format!("\"serial\":\"{serial}\""))).unwrap();
+    let own = |serial: &str| rows.iter().find(|row| row.contains(&format!("\"serial\":\"{serial}\""))).unwrap();
     // Twenty divides zero: it is measured in full.
     assert!(own("SN0").contains("\"by_prior\":false") && own("SN1").contains("\"by_prior\":true"));
     assert!(own("SN1").contains("prior.toml") && !own("SN0").contains("prior.toml"));
@@ -234,10 +231,9 @@ fn two_visits(count: usize) -> Folder {
         let header = lines.next().unwrap();
         let rows: Vec<&str> = lines.collect();
         std::fs::create_dir_all(folder.path(&format!("inbox/SN{robot}"))).unwrap();
-        for (date, part) in [
-            (format!("2026-03-0{}", robot + 1), &rows[..30]),
-            (format!("2026-09-0{}", robot + 1), &rows[30..]),
-        ] {
+        for (date, part) in
+            [(format!("2026-03-0{}", robot + 1), &rows[..30]), (format!("2026-09-0{}", robot + 1), &rows[30..])]
+        {
             folder.write(&format!("inbox/SN{robot}/{date}.csv"), format!("{header}\n{}\n", part.join("\n")));
         }
     }
@@ -272,11 +268,7 @@ fn robots_that_were_exchanged_are_named_by_the_ledger_and_others_are_not() {
     assert!(!words.contains("SN2"), "{words}");
     let run = folder.run("fleet report station.toml");
     println!("{}", run.out);
-    assert!(
-        run.out.contains("robots      3, ") && run.out.contains("; 6 measurements in all"),
-        "{}",
-        run.out
-    );
+    assert!(run.out.contains("robots      3, ") && run.out.contains("; 6 measurements in all"), "{}", run.out);
     assert_eq!(run.out.lines().filter(|it| it.starts_with("another     SN")).count(), 2);
     // Under its own number each is recognised again.
     for (path, number) in [(first, 0), (second, 1)] {
@@ -300,10 +292,7 @@ fn one_file_under_two_serial_numbers_is_refused_under_the_second() {
     println!("{}", run.err);
     let words = run.err.split_whitespace().collect::<Vec<_>>().join(" ");
     assert_eq!(run.code, 1);
-    assert!(
-        words.contains("SN7 2026-01-09: found the same bytes as `inbox/SN0/2026-01-01.csv` of SN0"),
-        "{words}"
-    );
+    assert!(words.contains("SN7 2026-01-09: found the same bytes as `inbox/SN0/2026-01-01.csv` of SN0"), "{words}");
     assert!(!words.contains("SN0 2026-01-01: ") && !folder.path("results/SN7").exists());
     // It was a copy of the second one's: it is calibrated once the first one is gone.
     std::fs::remove_file(folder.path("inbox/SN0/2026-01-01.csv")).unwrap();
@@ -314,9 +303,5 @@ fn one_file_under_two_serial_numbers_is_refused_under_the_second() {
     // Beside a robot that is already done only the copy is refused.
     folder.write("inbox/SN7/2026-01-09.csv", folder.read("inbox/SN1/2026-01-02.csv"));
     let run = folder.run("fleet station.toml");
-    assert!(
-        run.code == 1 && run.err.contains("SN7 2026-01-09") && !run.err.contains("SN1 2026"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 1 && run.err.contains("SN7 2026-01-09") && !run.err.contains("SN1 2026"), "{}", run.err);
 }

@@ -15,10 +15,8 @@ pub(crate) fn session(count: usize) -> Vec<(Pose, Pose)> {
         .map(|k| {
             let at = k as f64;
             let turn = [3.0 + 0.4 * (1.7 * at).sin(), 0.4 * (2.9 * at).cos(), 0.5 * (0.8 * at).sin()];
-            let seen = Pose::from_xyz_rpy(
-                [0.05 * (3.1 * at).sin(), 0.04 * at.cos(), 0.4 + 0.05 * (2.3 * at).sin()],
-                turn,
-            );
+            let seen =
+                Pose::from_xyz_rpy([0.05 * (3.1 * at).sin(), 0.04 * at.cos(), 0.4 + 0.05 * (2.3 * at).sin()], turn);
             let arm = board * seen.inverse() * camera.inverse();
             let off = [(9.1 * at).sin(), (7.7 * at).sin(), (5.3 * at).sin()].map(|it| 2e-5 * it);
             (arm, seen * Pose::from_xyz_rpy([0.0; 3], off))
@@ -59,9 +57,8 @@ pub(crate) fn table(folder: &Folder, name: &str, header: &str, rows: impl IntoIt
 pub(crate) fn camera(json: &str) -> (Vec<f64>, f64) {
     let all: serde_json::Value = serde_json::from_str(json).unwrap();
     let frame = &all["camera_frame"];
-    let numbers = |key: &str| -> Vec<f64> {
-        frame[key].as_array().unwrap().iter().map(|it| it.as_f64().unwrap()).collect()
-    };
+    let numbers =
+        |key: &str| -> Vec<f64> { frame[key].as_array().unwrap().iter().map(|it| it.as_f64().unwrap()).collect() };
     ([numbers("position_m"), numbers("quaternion_xyzw")].concat(), frame["bound95_mm"].as_f64().unwrap())
 }
 
@@ -69,9 +66,8 @@ pub(crate) fn camera(json: &str) -> (Vec<f64>, f64) {
 fn every_form_of_poses_gives_the_same_camera() {
     let folder = Folder::new();
     let rows = session(12);
-    let all = |form: &dyn Fn(&Pose, &Pose) -> Vec<f64>| {
-        rows.iter().map(|(arm, board)| form(arm, board)).collect::<Vec<_>>()
-    };
+    let all =
+        |form: &dyn Fn(&Pose, &Pose) -> Vec<f64>| rows.iter().map(|(arm, board)| form(arm, board)).collect::<Vec<_>>();
     let quaternion = |pose: &Pose| pose.quaternion_xyzw().to_vec();
     table(
         &folder,
@@ -117,17 +113,9 @@ fn every_form_of_poses_gives_the_same_camera() {
         "matrix.csv",
         &format!("{},{SEEN}", matrix.join(",")),
         all(&|arm, board| {
-            let row = |i: usize| {
-                [arm.rotation[(i, 0)], arm.rotation[(i, 1)], arm.rotation[(i, 2)], arm.translation[i]]
-            };
-            [
-                row(0).to_vec(),
-                row(1).to_vec(),
-                row(2).to_vec(),
-                vec![0.0, 0.0, 0.0, 1.0],
-                camera_numbers(board),
-            ]
-            .concat()
+            let row = |i: usize| [arm.rotation[(i, 0)], arm.rotation[(i, 1)], arm.rotation[(i, 2)], arm.translation[i]];
+            [row(0).to_vec(), row(1).to_vec(), row(2).to_vec(), vec![0.0, 0.0, 0.0, 1.0], camera_numbers(board)]
+                .concat()
         }),
     );
     let first = camera(&folder.run_to_success("hand-eye kuka.csv --camera in-hand --json")).0;
@@ -146,9 +134,7 @@ fn every_form_of_poses_gives_the_same_camera() {
 fn a_calibration_exports_the_transform_that_hand_eye_finds() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.run_to_success(
-        "simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell",
-    );
+    folder.run_to_success("simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell");
     folder.run_to_success("hand-eye cell/measurements.csv --robot robot.urdf --camera beside --out eye --frame-names base_link,tool,device,measured");
     folder.run_to_success("calibrate robot.urdf cell/measurements.csv --fix joints --report none");
     folder.run_to_success("export poecal-out/calibration.json --format tf --out tf.txt");
@@ -194,9 +180,8 @@ fn two_files_are_joined_by_names_and_results_are_written_once() {
         .map(|(k, (_, board))| format!("{k:04},{}", text(camera_numbers(board))))
         .collect();
     fs::write(folder.path("board.csv"), format!("image,{SEEN}\n{}\n", board.join("\n"))).unwrap();
-    let said = folder.run_to_success(
-        "hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board",
-    );
+    let said = folder
+        .run_to_success("hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board");
     assert!(said.contains("12 of 12 fitted") && said.contains("eye in flange: (4"), "{said}");
     for name in [
         "hand_eye.json",
@@ -221,11 +206,9 @@ fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
     let write = |name: &str, header: &str, form: &dyn Fn(usize) -> Vec<f64>| {
         table(&folder, name, header, (0..rows.len()).map(form));
     };
-    let usual =
-        |k: usize| [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), camera_numbers(&rows[k].1)].concat();
+    let usual = |k: usize| [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), camera_numbers(&rows[k].1)].concat();
     write("radians.csv", &kuka, &|k| {
-        [place(&rows[k].0, 1e3), abc(&rows[k].0).map(f64::to_radians).to_vec(), camera_numbers(&rows[k].1)]
-            .concat()
+        [place(&rows[k].0, 1e3), abc(&rows[k].0).map(f64::to_radians).to_vec(), camera_numbers(&rows[k].1)].concat()
     });
     write("order.csv", &kuka, &|k| {
         [place(&rows[k].0, 1e3), abc(&rows[k].0).to_vec(), camera_numbers(&rows[13 - k].1)].concat()
@@ -255,13 +238,7 @@ fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
         ("left", "left-handed"),
     ] {
         let run = folder.run(&format!("hand-eye {name}.csv --camera in-hand --out out --quiet"));
-        assert_eq!(
-            (run.code, run.err.lines().count(), run.out.as_str()),
-            (2, 1, ""),
-            "{name}: {}{}",
-            run.out,
-            run.err
-        );
+        assert_eq!((run.code, run.err.lines().count(), run.out.as_str()), (2, 1, ""), "{name}: {}{}", run.out, run.err);
         assert!(run.err.contains(expected), "{name}: {}", run.err);
     }
     assert!(folder.listing() == before);
@@ -278,10 +255,7 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
     for (name, tip) in [("end", end), ("shaft", shaft)] {
         for k in 0..7 {
             let at = f64::from(k);
-            let turned = Pose::from_xyz_rpy(
-                [0.0; 3],
-                [3.1 + 0.4 * (1.7 * at).sin(), 0.4 * (2.9 * at).cos(), 0.9 * at],
-            );
+            let turned = Pose::from_xyz_rpy([0.0; 3], [3.1 + 0.4 * (1.7 * at).sin(), 0.4 * (2.9 * at).cos(), 0.9 * at]);
             let back = Pose::from_xyz_rpy(tip.map(|it: f64| -it), [0.0; 3]);
             let mut arm = Pose::from_xyz_rpy(pin, [0.0; 3]) * turned * back;
             arm.translation.x += 1e-5 * (5.0 * at).sin() + if name == "end" && k == 4 { 0.003 } else { 0.0 };
@@ -289,20 +263,15 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
         }
     }
     fs::write(folder.path("touches.csv"), lines.join("\n")).unwrap();
-    let found: serde_json::Value =
-        serde_json::from_str(&folder.run_to_success("tcp touches.csv --json")).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&folder.run_to_success("tcp touches.csv --json")).unwrap();
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["tips"][0]["position_m"][2]) - 0.152).abs() < 5e-5, "{found}");
     assert!(number(&found["axis"]["direction"][2]) > 0.9999, "{found}");
     assert_eq!(found["outliers"], serde_json::json!(["line 6"]));
     assert!(found["tool"]["matrix"].is_array(), "{found}");
     // A single tip determines no direction, and no touch a mass: neither is printed.
-    let one: Vec<&str> = lines
-        .iter()
-        .filter(|it| !it.ends_with("shaft"))
-        .filter_map(|it| it.rsplit_once(','))
-        .map(|it| it.0)
-        .collect();
+    let one: Vec<&str> =
+        lines.iter().filter(|it| !it.ends_with("shaft")).filter_map(|it| it.rsplit_once(',')).map(|it| it.0).collect();
     fs::write(folder.path("one.csv"), one.join("\n")).unwrap();
     let said = folder.run_to_success("tcp one.csv --out tip");
     assert!(said.contains("good: tip within") || said.contains("bounds: tip within"), "{said}");
@@ -314,8 +283,7 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
         assert!(texts.contains(always), "{always}: {texts}");
     }
     let two: Vec<&String> = lines.iter().take(3).collect();
-    fs::write(folder.path("two.csv"), two.iter().map(|it| it.as_str()).collect::<Vec<_>>().join("\n"))
-        .unwrap();
+    fs::write(folder.path("two.csv"), two.iter().map(|it| it.as_str()).collect::<Vec<_>>().join("\n")).unwrap();
     let run = folder.run("tcp two.csv --quiet");
     assert_eq!(run.code, 2);
     assert!(run.err.contains("found 2 touches"), "{}", run.err);
@@ -357,13 +325,9 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         ),
     )
     .unwrap();
-    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,359.5,339.5,720,640\n")
-        .unwrap();
+    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,359.5,339.5,720,640\n").unwrap();
     let all = |turned: &dyn Fn(usize) -> bool| -> String {
-        let lines = rows
-            .iter()
-            .enumerate()
-            .flat_map(|(k, (_, board))| corners(&format!("{k}.png"), board, turned(k)));
+        let lines = rows.iter().enumerate().flat_map(|(k, (_, board))| corners(&format!("{k}.png"), board, turned(k)));
         format!("image,target,u[px],v[px]\n{}\n", lines.collect::<Vec<_>>().join("\n"))
     };
     fs::write(folder.path("corners.csv"), all(&|_| false)).unwrap();
@@ -383,11 +347,10 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         assert!((of(&plain, k) - truth).abs() < 1.5e-3 * bound, "{plain}");
         assert!(bound < 1.0, "{bound}");
     }
-    let turned: serde_json::Value =
-        serde_json::from_str(&folder.run_to_success(
-            &format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv"),
-        ))
-        .unwrap();
+    let turned: serde_json::Value = serde_json::from_str(
+        &folder.run_to_success(&format!("hand-eye corners.csv arm.csv {run}").replace("corners.csv", "turned.csv")),
+    )
+    .unwrap();
     for k in 0..3 {
         assert!((of(&plain, k) - of(&turned, k)).abs() < 1e-6, "{plain} {turned}");
     }
@@ -415,8 +378,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     // The fitted lens can be stated, and results in the same camera.
     fs::copy(folder.path("found/lens.csv"), folder.path("again.csv")).unwrap();
     let again: serde_json::Value = serde_json::from_str(
-        &folder
-            .run_to_success(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
+        &folder.run_to_success(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),
     )
     .unwrap();
     for k in 0..3 {
@@ -427,10 +389,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
             "hand-eye arm.csv corners.csv --camera beside --lens lens.csv --markers chessboard:6x5:30mm --out wrong",
             "run with --camera in-hand",
         ),
-        (
-            "hand-eye arm.csv corners.csv --camera in-hand --markers chessboard:6x5:30mm",
-            "expected --lens FILE",
-        ),
+        ("hand-eye arm.csv corners.csv --camera in-hand --markers chessboard:6x5:30mm", "expected --lens FILE"),
         ("hand-eye arm.csv corners.csv --camera in-hand --lens lens.csv", "expected --markers"),
         (
             "hand-eye nameless.csv corners.csv --camera in-hand --lens lens.csv --markers chessboard:6x5:30mm",
@@ -471,7 +430,6 @@ fn joint_readings_stand_for_the_arms_poses_and_say_whether_to_fit_the_arm() {
     let command = command.strip_prefix("poecal ").unwrap();
     let said = folder.run_to_success(&format!("{command} --out fitted"));
     assert!(said.contains("held out"), "{said}");
-    let run = folder
-        .run(&format!("hand-eye {examples}/howto/hand_eye.csv --camera in-hand --tip-link tool --quiet"));
+    let run = folder.run(&format!("hand-eye {examples}/howto/hand_eye.csv --camera in-hand --tip-link tool --quiet"));
     assert_eq!((run.code, run.err.contains("no model")), (2, true), "{}", run.err);
 }

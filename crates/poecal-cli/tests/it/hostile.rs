@@ -19,8 +19,7 @@ const NAMES: [&str; 6] = [
     "J6\nverdict       good: as a name has it",
 ];
 /// Ids and names of targets.
-const CELLS: [&str; 6] =
-    ["=1+1", "@SUM(A1)", "\u{1b}[31mid", "'=x", "-2+3\u{200b}", "=HYPERLINK(\"\"http://x\"\",a)"];
+const CELLS: [&str; 6] = ["=1+1", "@SUM(A1)", "\u{1b}[31mid", "'=x", "-2+3\u{200b}", "=HYPERLINK(\"\"http://x\"\",a)"];
 
 /// `robot.urdf` with hostile names of joints, `points.csv` with hostile ids and targets, and `map.toml` that brings them together.
 fn folder() -> Folder {
@@ -41,15 +40,13 @@ fn folder_of(names: [&str; 6]) -> Folder {
     folder.write("robot.urdf", urdf);
     folder.write("map.toml", map);
     let model = Model::read(folder.path("plain.urdf"), &Default::default()).unwrap();
-    let data =
-        Simulation { count: 60, ..Simulation::default() }.run(&model.robot, SessionKind::POINT).unwrap().data;
+    let data = Simulation { count: 60, ..Simulation::default() }.run(&model.robot, SessionKind::POINT).unwrap().data;
     let mut text = format!("id,target,\u{1b}[5mextra\u{202d},{},x,y,z\n", data.reading_names().join(","));
     for (row, observation) in data.observations.iter().enumerate() {
         let [x, y, z]: [f64; 3] = observation.measurement.pose().translation.into();
         let readings: Vec<String> = data.readings(row).iter().map(|value| format!("{value:?}")).collect();
         let cell = CELLS[row % CELLS.len()];
-        writeln!(text, "\"{cell}\",\"{}\",1,{},{x:?},{y:?},{z:?}", CELLS[row % 2 * 2], readings.join(","))
-            .unwrap();
+        writeln!(text, "\"{cell}\",\"{}\",1,{},{x:?},{y:?},{z:?}", CELLS[row % 2 * 2], readings.join(",")).unwrap();
     }
     folder.write("points.csv", text);
     folder
@@ -145,9 +142,7 @@ fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
         format!("validate out/calibration.json points.csv {with} --out judged"),
         format!("predict robot.urdf points.csv {with} --out predicted.csv"),
         format!("import robot.urdf points.csv {with} --out imported.csv"),
-        format!(
-            "compensate out/calibration.json points.csv {with} --out corrected.csv --max-correction 90deg"
-        ),
+        format!("compensate out/calibration.json points.csv {with} --out corrected.csv --max-correction 90deg"),
         "simulate robot.urdf --kind point --count 8 --out simulated".to_owned(),
         format!("plan robot.urdf --candidates points.csv {with} --count 8 --out planned.csv"),
         "track out/calibration.json --plan 4 --out visit.csv".to_owned(),
@@ -157,10 +152,7 @@ fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
         let run = folder.run(&words);
         println!("{words}: {}, {}", run.code, run.err.lines().last().unwrap_or_default());
         assert!(
-            run.code <= 1
-                || words.starts_with("plan")
-                || words.starts_with("track")
-                || words.starts_with("compensate"),
+            run.code <= 1 || words.starts_with("plan") || words.starts_with("track") || words.starts_with("compensate"),
             "{words}: {}",
             run.err
         );
@@ -174,8 +166,7 @@ fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
         let Some(content) = content.filter(|_| is_own && !path.ends_with("corrected.csv")) else { continue };
         tables.push(path.file_name().unwrap().to_string_lossy().into_owned());
         let text = String::from_utf8(content).unwrap();
-        let body: String =
-            text.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect();
+        let body: String = text.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect();
         for cell in cells(&body) {
             count += 1;
             let is_run = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
@@ -183,9 +174,7 @@ fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
         }
     }
     println!("{count} cells of {tables:?}");
-    for name in
-        ["residuals.csv", "errors.csv", "predicted.csv", "imported.csv", "fleet.csv", "measurements.csv"]
-    {
+    for name in ["residuals.csv", "errors.csv", "predicted.csv", "imported.csv", "fleet.csv", "measurements.csv"] {
         assert!(tables.iter().any(|it| it == name), "{name}: {tables:?}");
     }
 }

@@ -47,8 +47,7 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
 fn json_holds_the_same() {
     let folder = folder();
     let of = |arguments: &str| -> serde_json::Value {
-        serde_json::from_str(&folder.run_to_success(&format!("plan column.toml --rows {arguments} --json")))
-            .unwrap()
+        serde_json::from_str(&folder.run_to_success(&format!("plan column.toml --rows {arguments} --json"))).unwrap()
     };
     let found = of("still.csv --kind pose");
     assert_eq!(
@@ -72,9 +71,7 @@ fn json_holds_the_same() {
     let found = of("all.csv --kind pose --sigma-position 0.05mm --sigma-rotation 0.01deg");
     let expected = |key: &str| found["expected_error"][key].as_f64().unwrap();
     // Less than the noise of one measurement, with some 40 of them.
-    assert!(
-        expected("position_mean_mm") < 0.05 && expected("position_worst_mm") > expected("position_mean_mm")
-    );
+    assert!(expected("position_mean_mm") < 0.05 && expected("position_worst_mm") > expected("position_mean_mm"));
     assert_eq!(found["expected_error"]["told"], 1000);
     assert!(found["identifiability"]["observability"]["o3"].as_f64().unwrap() > 1e3);
 }

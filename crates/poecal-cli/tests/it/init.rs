@@ -213,17 +213,11 @@ fn files_are_checked_as_the_settings_say() {
     // The chain, the model and its measurements are those of the settings, of which the seed is none that `check` has.
     let settings = format!("{}\nseed = 3\n", folder.read("cell/poecal.toml"));
     folder.write("cell/poecal.toml", &settings);
-    folder.write(
-        "cell/measurements.csv",
-        "\"turn, left[deg]\",slide[mm],hand[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5,6\n",
-    );
+    folder.write("cell/measurements.csv", "\"turn, left[deg]\",slide[mm],hand[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5,6\n");
     let by_settings = folder.run_to_success("check --settings cell/poecal.toml");
     let typed = words("check cell/robot.urdf cell/measurements.csv --tip-link 'left tool'");
     assert_eq!(by_settings, folder.run_words(&typed).out);
-    assert!(
-        by_settings.contains("from base to left tool") && by_settings.contains("1: 1 point"),
-        "{by_settings}"
-    );
+    assert!(by_settings.contains("from base to left tool") && by_settings.contains("1: 1 point"), "{by_settings}");
     // Typed options take precedence.
     let run = folder.run("check --settings cell/poecal.toml --tip-link nowhere");
     assert!(run.code == 2 && run.err.contains("nowhere"), "{}", run.err);
@@ -237,18 +231,15 @@ fn files_are_checked_as_the_settings_say() {
         (2, "error: found no model, expected `poecal check MODEL FILES…`, or settings that name it\n")
     );
     let run = folder.run("check");
-    assert!(
-        run.code == 2 && run.err.contains("expected `poecal check MODEL FILES…`, or settings"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 2 && run.err.contains("expected `poecal check MODEL FILES…`, or settings"), "{}", run.err);
 }
 
 #[test]
 fn an_option_that_is_typed_replaces_settings_that_it_excludes() {
     let folder = project();
     folder.run_to_success("simulate robot.urdf --kind point --count 20 --noise 0.06mm --out other");
-    let settings = "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\ntrain_where = 'stage=1'\n";
+    let settings =
+        "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\ntrain_where = 'stage=1'\n";
     folder.write("cell/poecal.toml", settings);
     assert_eq!(folder.run("calibrate --settings cell/poecal.toml").code, 2);
     folder.run_to_success("calibrate --settings cell/poecal.toml --validate other/measurements.csv");
@@ -268,10 +259,7 @@ fn mistakes_in_settings_are_told_with_line_and_column() {
             "sigma_position = 0.05",
             "4:18: sigma_position: found `0.05` without a unit, expected a number with a unit, like 0.05mm",
         ),
-        (
-            "robust = 'sturdy'",
-            "4:10: robust: found `sturdy`, expected one of auto, off, huber, cauchy, tukey",
-        ),
+        ("robust = 'sturdy'", "4:10: robust: found `sturdy`, expected one of auto, off, huber, cauchy, tukey"),
         ("force = 'yes'", "4:9: found a value for `force`, expected true or false"),
         ("seed = [1, 2]", "4:8: found a list for `seed`, expected one value"),
         ("seed = true", "4:8: found true or false for `seed`, expected a value"),
@@ -293,9 +281,5 @@ fn mistakes_in_settings_are_told_with_line_and_column() {
         run.err
     );
     let run = folder.run("calibrate robot.urdf");
-    assert!(
-        run.code == 2 && run.err.starts_with("error: found no measurement file, expected"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 2 && run.err.starts_with("error: found no measurement file, expected"), "{}", run.err);
 }

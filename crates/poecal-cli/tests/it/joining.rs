@@ -87,10 +87,7 @@ fn lost_and_double_rows_are_named_and_all_others_paired() {
     // Equal entries in the file and in the report.
     let file: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
     let join = &file["inputs"]["joins"][0];
-    assert_eq!(
-        (&join["join"], &join["joint_rows"], &join["measured_rows"]),
-        (&"rows".into(), &40.into(), &39.into())
-    );
+    assert_eq!((&join["join"], &join["joint_rows"], &join["measured_rows"]), (&"rows".into(), &40.into(), &39.into()));
     assert_eq!(join["unmeasured"], serde_json::json!([{"number": 7, "line": 8}, {"number": 23, "line": 24}]));
     assert_eq!(join["repeated"], serde_json::json!([{"number": 31, "line": 32}]));
     assert_eq!(join["pairs"][6], serde_json::json!([8, 7]));
@@ -137,10 +134,7 @@ fn wrong_orders_are_refused_with_what_fits() {
         ),
         ("joints.csv turned.csv", "in reverse order, expected no other order to fit better"),
         ("joints.csv mixed.csv", "no less than by chance"),
-        (
-            "four.csv few.csv",
-            "found 4 configurations, with which nothing shows whether the rows belong together",
-        ),
+        ("four.csv few.csv", "found 4 configurations, with which nothing shows whether the rows belong together"),
         ("joints.csv later.csv --join name", "found no name that is in both"),
     ] {
         let run = folder.run(&format!("calibrate {MODEL} {files} --out out --quiet"));

@@ -41,11 +41,7 @@ fn a_file_beyond_a_limit_is_refused_by_its_name() {
         ("elements=20", "check robot.urdf points.csv", "found more than 20 elements in an XML file"),
         ("nesting=1", "check robot.urdf points.csv", "found more than 1 levels in each other"),
         ("workbook=1KiB", "check robot.urdf points.xlsx", "found more than 1 KiB in a workbook"),
-        (
-            "unpacked=1KiB",
-            "check robot.urdf points.xlsx",
-            "found more than 1 KiB in the parts of this workbook",
-        ),
+        ("unpacked=1KiB", "check robot.urdf points.xlsx", "found more than 1 KiB in the parts of this workbook"),
         ("cells=9000", "check robot.urdf far.xlsx", "found a sheet of 9001 rows and 21 columns"),
     ] {
         let name = limit.split('=').next().unwrap();
@@ -63,11 +59,7 @@ fn a_file_beyond_a_limit_is_refused_by_its_name() {
     // A line that no form could have.
     folder.write("wide.csv", format!("a,b,c\n{}\n", ",".repeat(99)));
     let run = folder.run("check robot.urdf wide.csv --limit columns=5");
-    assert!(
-        run.code == 2 && run.err.contains("wide.csv:2: found 100 columns, expected at most 5"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 2 && run.err.contains("wide.csv:2: found 100 columns, expected at most 5"), "{}", run.err);
     // More is read on request.
     let lower = "check robot.urdf points.csv --limit rows=29";
     assert_eq!(folder.run(&format!("{lower} --limit rows=30")).code, 0);
@@ -86,7 +78,10 @@ fn a_file_beyond_a_limit_is_refused_by_its_name() {
     let run = folder.run(&format!("{compare} --limit 0.5mm --limit text=500"));
     assert!(run.code == 2 && run.err.contains("--limit text=N"), "{}", run.err);
     // Settings come from elsewhere.
-    folder.write("poecal.toml", "poecal_settings = 1\nmodel = \"robot.urdf\"\nmeasurements = [\"points.csv\"]\nlimit = [\"rows=3\"]\n");
+    folder.write(
+        "poecal.toml",
+        "poecal_settings = 1\nmodel = \"robot.urdf\"\nmeasurements = [\"points.csv\"]\nlimit = [\"rows=3\"]\n",
+    );
     let run = folder.run("check --settings poecal.toml");
     assert!(run.code == 2 && run.err.contains("limit"), "{}", run.err);
 }
@@ -151,11 +146,9 @@ fn many_keys_and_columns_take_no_time() {
     let mut header = (0..16_000).map(|at| format!("c{at}.name{at}")).collect::<Vec<_>>().join(",");
     header.push('\n');
     folder.write("many.csv", format!("{header}{}\n", vec!["x"; 16_000].join(",")));
-    for words in [
-        "check robot.urdf many.yaml",
-        "check robot.urdf many.csv",
-        "check robot.urdf points.csv --camera many.yaml",
-    ] {
+    for words in
+        ["check robot.urdf many.yaml", "check robot.urdf many.csv", "check robot.urdf points.csv --camera many.yaml"]
+    {
         let start = std::time::Instant::now();
         let run = folder.run(words);
         println!("{words}: {:.2} s, {}", start.elapsed().as_secs_f64(), run.err.trim_end());

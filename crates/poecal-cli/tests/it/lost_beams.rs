@@ -32,11 +32,7 @@ fn lost_beams_are_told_or_refused() {
         assert!(run.err.starts_with(refused) && run.err.contains("found an empty position"), "{}", run.err);
     }
     let run = folder.run("calibrate robot.urdf lost.csv");
-    assert!(
-        run.err.contains(&format!("warning: lost.csv: skipped {words}; --strict refuses them")),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains(&format!("warning: lost.csv: skipped {words}; --strict refuses them")), "{}", run.err);
     let run = folder.run("validate poecal-out/calibration.json lost.csv --strict");
     assert!(run.code == 2 && run.err.starts_with(refused), "{}", run.err);
 }

@@ -4,13 +4,10 @@ use std::fmt::Write as _;
 use std::fs;
 
 use crate::folder::Folder;
-use crate::recorded::{
-    MODEL, Row, held_out, interpolate_rows, interpolate_turn, join_numbers, session, stream,
-};
+use crate::recorded::{MODEL, Row, held_out, interpolate_rows, interpolate_turn, join_numbers, session, stream};
 
 /// The positions of four markers on the tool, metres in the tool's frame.
-const MARKERS: [[f64; 3]; 4] =
-    [[0.06, 0.0, 0.01], [-0.04, 0.05, 0.0], [-0.02, -0.07, 0.03], [0.01, 0.02, 0.09]];
+const MARKERS: [[f64; 3]; 4] = [[0.06, 0.0, 0.01], [-0.04, 0.05, 0.0], [-0.02, -0.07, 0.03], [0.01, 0.02, 0.09]];
 
 /// A point of a frame with a quaternion x, y, z, w, mm.
 fn place_point(place: &[f64], [x, y, z, w]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3] {
@@ -28,13 +25,13 @@ fn takes(rows: &[Row]) -> (String, String, String) {
     let next = |row: usize| (row + 1).min(rows.len() - 1);
     let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
     for (time, row, share) in stream(rows.len(), 50) {
-        let radians: Vec<f64> = interpolate_rows(&rows[row].0, &rows[next(row)].0, share)
-            .iter()
-            .map(|it| it.to_radians())
-            .collect();
+        let radians: Vec<f64> =
+            interpolate_rows(&rows[row].0, &rows[next(row)].0, share).iter().map(|it| it.to_radians()).collect();
         writeln!(log, "{:.6},{}", 100.0 + time, join_numbers(&radians, 9, ",")).unwrap();
     }
-    let mut take = "Format Version,1.24,Take Name,A,Export Frame Rate,50.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n".to_owned();
+    let mut take =
+        "Format Version,1.24,Take Name,A,Export Frame Rate,50.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n"
+            .to_owned();
     let mut head = |label: &str, of: &dyn Fn(usize) -> String| {
         take += &format!("{label}{}\n", (0..15).map(of).collect::<Vec<_>>().join(","));
     };
@@ -76,18 +73,11 @@ fn exchanged_markers_are_put_back_and_lost_names_found() {
     println!("{found:.6} mm with exchanged names, {expected:.6} mm without");
     assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}\n{said}");
     // The first frame is in line 8.
-    assert!(
-        said.contains("damaged.csv: exchanged the names of `A`, `B` in 300 frames (lines 408, 409,"),
-        "{said}"
-    );
+    assert!(said.contains("damaged.csv: exchanged the names of `A`, `B` in 300 frames (lines 408, 409,"), "{said}");
     assert!(said.contains("found 100 places of its markers among those without a name"), "{said}");
     // Without any names: the markers that are present from the beginning on form the body.
     let nameless = ["A", "B", "C", "D"].iter().enumerate().fold(damaged, |text, (at, name)| {
-        text.replacen(
-            &format!("{name},{name},{name}"),
-            &[format!("Unlabeled {}", 1100 + at).as_str(); 3].join(","),
-            1,
-        )
+        text.replacen(&format!("{name},{name},{name}"), &[format!("Unlabeled {}", 1100 + at).as_str(); 3].join(","), 1)
     });
     fs::write(folder.path("nameless.csv"), nameless).unwrap();
     let (found, said) = held_out(&folder, "robot_data.csv nameless.csv");
@@ -107,11 +97,8 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
     let rows = session(&folder, 36);
     let names = "joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]";
     let axes = "x[mm],y[mm],z[mm]";
-    let (joints, place) =
-        (|row: &Row| join_numbers(&row.0, 6, ","), |row: &Row| join_numbers(&row.1, 4, ","));
-    let write = |name: &str, header: &str, of: &dyn Fn(usize, &Row) -> String| {
-        table(&folder, name, header, &rows, of)
-    };
+    let (joints, place) = (|row: &Row| join_numbers(&row.0, 6, ","), |row: &Row| join_numbers(&row.1, 4, ","));
+    let write = |name: &str, header: &str, of: &dyn Fn(usize, &Row) -> String| table(&folder, name, header, &rows, of);
     write("joints.csv", names, &|_, row| joints(row));
     write("points.csv", axes, &|_, row| place(row));
     // One name too few and one too many, which the numbers of cells show.
@@ -121,18 +108,15 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
     write("right.csv", &format!("{names},note"), &|k, row| format!("{k},{}", joints(row)));
     write("left.csv", &format!("# made by hand\nn,{names}"), &|_, row| format!("{},0", joints(row)));
     write("shifted_points.csv", &format!("{axes},note"), &|k, row| format!("{k},{}", place(row)));
-    write("whole.csv", &format!("{names},{axes},note"), &|k, row| {
-        format!("{k},{},{}", joints(row), place(row))
-    });
+    write("whole.csv", &format!("{names},{axes},note"), &|k, row| format!("{k},{},{}", joints(row), place(row)));
     write("mirrored.csv", axes, &|_, row| join_numbers(&[row.1[0], -row.1[1], row.1[2]], 4, ","));
     let first = |of: &dyn Fn(usize, &Row) -> String, name: &str, some: &[Row]| {
         table(&folder, name, &format!("{names},{axes}"), some, of);
     };
     first(&|_, row| format!("{},{}", joints(row), place(row)), "first.csv", &rows[..18]);
     for (name, factor) in [("cm.csv", 0.1), ("inches.csv", 1.0 / 25.4), ("metres.csv", 1e-3)] {
-        let of = |_: usize, row: &Row| {
-            format!("{},{}", joints(row), join_numbers(&row.1.map(|it| it * factor), 7, ","))
-        };
+        let of =
+            |_: usize, row: &Row| format!("{},{}", joints(row), join_numbers(&row.1.map(|it| it * factor), 7, ","));
         first(&of, name, &rows[18..]);
     }
     let before = folder.listing();
@@ -146,10 +130,7 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
             "many.csv points.csv",
             "the header has one name too many, take out that of the column that the rows do not have",
         ),
-        (
-            "right.csv points.csv",
-            "right.csv:1: found the values of each name one column further to the right",
-        ),
+        ("right.csv points.csv", "right.csv:1: found the values of each name one column further to the right"),
         ("right.csv points.csv", "the header has one name too few at its beginning"),
         ("left.csv points.csv", "left.csv:2: found the values of each name one column further to the left"),
         ("whole.csv", "whole.csv:1: found the values of each name one column further to the right"),
@@ -211,10 +192,8 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
         };
         ["x", "y", "z", "a", "b", "c"].map(name).join(",")
     };
-    let (named, bare) = (
-        format!("id,{},{}", columns("Nominal "), columns("Measured ")),
-        format!("id,{},{}", columns(""), columns("")),
-    );
+    let (named, bare) =
+        (format!("id,{},{}", columns("Nominal "), columns("Measured ")), format!("id,{},{}", columns(""), columns("")));
     for (file, header, is_first, words) in [
         ("named.csv", &named, false, "took the measured of two sets of coordinates"),
         ("second.csv", &bare, false, "took the second of two sets of coordinates"),
@@ -222,11 +201,7 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
     ] {
         table(&folder, file, header, &rows, &|k, row| {
             let (one, other) = (set(&nominal[k]), set(&row.1));
-            format!(
-                "P{},{}",
-                k + 1,
-                if is_first { format!("{other},{one}") } else { format!("{one},{other}") }
-            )
+            format!("P{},{}", k + 1, if is_first { format!("{other},{one}") } else { format!("{one},{other}") })
         });
         let (found, said) = held_out(&folder, &format!("joints.csv {file}"));
         println!("{file}: {found:.6} mm, {expected:.6} mm of the measured points alone");
@@ -244,12 +219,7 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
         format!("P{},{},{}", k + 1, set(&row.1), set(&row.1.map(|it| it + 0.2)))
     });
     table(&folder, "none.csv", &named, &rows, &|k, row| {
-        format!(
-            "P{},{},{}",
-            k + 1,
-            set(&nominal[k]),
-            set(&rows[(7 * k + 3) % 30].1.map(|it| it + 0.01 * row.1[0]))
-        )
+        format!("P{},{},{}", k + 1, set(&nominal[k]), set(&rows[(7 * k + 3) % 30].1.map(|it| it + 0.01 * row.1[0])))
     });
     for (file, words) in [
         (
@@ -280,9 +250,5 @@ fn what_a_model_states_beyond_what_is_read_is_named() {
     }
     folder.write("robot.urdf", model.replacen("<origin ", "<origin scale=\"0.001\" ", 1));
     let run = folder.run("check robot.urdf");
-    assert!(
-        run.code == 2 && run.err.contains("robot.urdf:15: found `0.001` for `origin.scale`"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 2 && run.err.contains("robot.urdf:15: found `0.001` for `origin.scale`"), "{}", run.err);
 }

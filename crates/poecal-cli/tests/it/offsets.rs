@@ -56,10 +56,7 @@ fn offsets_that_were_put_in_are_found() {
 fn json_holds_the_same_and_goes_into_a_file() {
     let folder = folder();
     folder.run_to_success("export column.toml --offset turn=0.5deg --offset slide=1.2mm --out actual.toml");
-    assert_eq!(
-        folder.run_to_success("offsets column.toml actual.toml --free tip --json --out offsets.json"),
-        ""
-    );
+    assert_eq!(folder.run_to_success("offsets column.toml actual.toml --free tip --json --out offsets.json"), "");
     let found = json(&folder.read("offsets.json"));
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["joints"][0]["offset_deg"]) - 0.5).abs() < 1e-12);
@@ -86,8 +83,7 @@ fn a_calibration_has_a_base_and_a_tip_of_its_own() {
     let ends = |arguments: &str| {
         let out = folder.run_to_success(&format!("offsets robot.urdf {arguments} --json"));
         let found = json(&out);
-        ["base", "tip"]
-            .map(|end| format!("{}: {}", found[end]["frame"], found[end]["reason"]).replace('"', ""))
+        ["base", "tip"].map(|end| format!("{}: {}", found[end]["frame"], found[end]["reason"]).replace('"', ""))
     };
     assert_eq!(
         ends("anywhere/calibration.json"),
@@ -100,10 +96,7 @@ fn a_calibration_has_a_base_and_a_tip_of_its_own() {
     // The chain is the URDF's; a calibration has one only.
     ends("anywhere/calibration.json --base-link base_link --tip-link tool");
     let out = folder.run_to_success("offsets robot.urdf anywhere/calibration.json");
-    assert!(
-        out.contains("undetermined  * joint1, joint6: this comparison does not determine these\n"),
-        "{out}"
-    );
+    assert!(out.contains("undetermined  * joint1, joint6: this comparison does not determine these\n"), "{out}");
 }
 
 #[test]
@@ -153,11 +146,7 @@ fn mistakes_get_a_sentence() {
     ];
     for (arguments, sentence) in cases {
         let run = folder.run(arguments);
-        assert_eq!(
-            (run.code, run.out.as_str(), run.err),
-            (2, "", format!("error: {sentence}\n")),
-            "{arguments}"
-        );
+        assert_eq!((run.code, run.out.as_str(), run.err), (2, "", format!("error: {sentence}\n")), "{arguments}");
     }
     // Absurd lengths are refused too, for any reason.
     for form in ["urdf", "toml"] {
@@ -172,10 +161,8 @@ fn mistakes_get_a_sentence() {
 #[test]
 fn an_offset_of_a_leader_says_that_its_followers_stay() {
     let folder = Folder::new();
-    let mimic = COLUMN.replace(
-        "limits = [-90, 90] }",
-        "limits = [-90, 90], mimic = { joint = \"turn\", multiplier = 2 } }",
-    );
+    let mimic =
+        COLUMN.replace("limits = [-90, 90] }", "limits = [-90, 90], mimic = { joint = \"turn\", multiplier = 2 } }");
     folder.write("column.toml", &mimic);
     let run = folder.run("export column.toml --offset turn=0.5deg --out actual.toml");
     assert_eq!(run.code, 0, "{run:?}");

@@ -43,11 +43,7 @@ fn texts() -> Vec<(&'static str, String, &'static str)> {
         ("windows", format!("<?xml version=\"1.0\"?>\r\n{}", PLAIN.replace('\n', "\r\n")), ""),
         ("tabs", PLAIN.replace("  ", "\t").replace("xyz=\"0.1 0 0.2\"", "xyz=\"  0.1\t0  0.2 \""), ""),
         ("apostrophes", PLAIN.replace('"', "'"), ""),
-        (
-            "turned round",
-            PLAIN.replace("xyz=\"0 0 0.3\" rpy=\"0 0 0\"", "rpy = \"0 0 0\"   xyz= \"0 0 0.3\""),
-            "",
-        ),
+        ("turned round", PLAIN.replace("xyz=\"0 0 0.3\" rpy=\"0 0 0\"", "rpy = \"0 0 0\"   xyz= \"0 0 0.3\""), ""),
         ("transmissions", with(&format!("{transmission}{control}")), ""),
         ("camera", with(camera), " --tip-link tool"),
         ("fingers", with(fingers), " --tip-link tool"),
@@ -78,8 +74,7 @@ fn without_numbers(text: &str) -> String {
         for (k, piece) in joint.split('<').enumerate() {
             let is_ours = piece.starts_with("origin") || piece.starts_with("axis");
             blank.push_str(if k > 0 { "<" } else { "" });
-            blank
-                .extend(piece.chars().filter(|c| !is_ours || !(c.is_ascii_digit() || " .-e\t".contains(*c))));
+            blank.extend(piece.chars().filter(|c| !is_ours || !(c.is_ascii_digit() || " .-e\t".contains(*c))));
         }
         // An added origin.
         found.push_str(&blank.replace("<originxyz=\"\"rpy=\"\"/>", ""));
@@ -157,10 +152,7 @@ fn another_robot_is_told() {
         ("export robot.urdf --onto robot.urdf", "found a model, expected the calibration.json"),
         ("export out/calibration.json --format kuka", "KUKA's absolute accuracy"),
         ("export out/calibration.json --format mjcf --hash 3", "found --hash beside another form"),
-        (
-            "export out/calibration.json --format ur",
-            "found 3 joints, expected the 6 of an arm of Universal Robots",
-        ),
+        ("export out/calibration.json --format ur", "found 3 joints, expected the 6 of an arm of Universal Robots"),
         ("export robot.urdf --format offsets", "expected the calibration.json"),
         ("export robot.urdf --format pal", "found no URDF in the calibration"),
     ] {
@@ -177,17 +169,13 @@ fn differences_of_origins() {
     let run = folder.run("export out/calibration.json --format pal");
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     println!("{}", run.out);
-    assert!(
-        run.out.contains("robot_state_publisher:\n  geometric_calibration:\n")
-            && run.out.contains("    j2_dx: ")
-    );
+    assert!(run.out.contains("robot_state_publisher:\n  geometric_calibration:\n") && run.out.contains("    j2_dx: "));
     let number = |key: &str| -> f64 {
         let line = run.out.lines().find(|line| line.trim_start().starts_with(&format!("{key}: "))).unwrap();
         line.split(": ").nth(1).unwrap().parse().unwrap()
     };
     let urdf = std::fs::read_to_string(folder.path("out/calibrated.urdf")).unwrap();
-    let origin =
-        urdf.split("name=\"j2\"").nth(1).unwrap().split("xyz=\"").nth(1).unwrap().split('"').next().unwrap();
+    let origin = urdf.split("name=\"j2\"").nth(1).unwrap().split("xyz=\"").nth(1).unwrap().split('"').next().unwrap();
     let x: f64 = origin.split(' ').next().unwrap().parse().unwrap();
     assert!((0.1 + number("j2_dx") - x).abs() < 1e-15);
 }

@@ -16,9 +16,8 @@ fn simulated_pictures_calibrate_the_robot_wherever_the_camera_is() {
     ] {
         let folder = Folder::new();
         fs::copy(Path::new(MODEL), folder.path("robot.urdf")).unwrap();
-        let simulate = format!(
-            "simulate robot.urdf --camera {place} --board {spec} --errors 0.2deg,0.5mm --count 20 --out s"
-        );
+        let simulate =
+            format!("simulate robot.urdf --camera {place} --board {spec} --errors 0.2deg,0.5mm --count 20 --out s");
         folder.run_to_success(&simulate);
         if place == "beside" {
             let first = folder.listing();

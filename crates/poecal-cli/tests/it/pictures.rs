@@ -8,8 +8,7 @@ use crate::folder::Folder;
 fn words(command: &str, files: &str, more: &str) -> String {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let (model, howto) = (examples.join("elbow/robot.urdf"), examples.join("howto"));
-    let files: Vec<String> =
-        files.split_whitespace().map(|name| howto.join(name).display().to_string()).collect();
+    let files: Vec<String> = files.split_whitespace().map(|name| howto.join(name).display().to_string()).collect();
     let camera = howto.join("lens.csv");
     let before = if command == "plan" { "--rows " } else { "" };
     let files: Vec<String> = files.iter().map(|file| format!("{before}{file}")).collect();
@@ -31,11 +30,7 @@ fn a_list_of_pictures_says_what_pictures_determine() {
     // 50 pictures that are known to 1 mm and 1 mrad.
     assert!((0.5..2.0).contains(&mean_mm), "{mean_mm}");
     let points = folder.run(&words("plan", "../elbow/points.csv", BOARD));
-    assert!(
-        points.code == 2 && points.err.contains("expected corners with u[px] and v[px]"),
-        "{}",
-        points.err
-    );
+    assert!(points.code == 2 && points.err.contains("expected corners with u[px] and v[px]"), "{}", points.err);
 }
 
 #[test]

@@ -149,11 +149,7 @@ fn links_are_followed_or_refused() {
     fs::remove_file(folder.path("results")).unwrap();
     fs::remove_file(folder.path("out/report.html")).unwrap();
     symlink("../robot.urdf", folder.path("out/report.html")).unwrap();
-    assert_refused(
-        &folder,
-        "calibrate robot.urdf measurements.csv --out out --force",
-        "out/report.html: found a link",
-    );
+    assert_refused(&folder, "calibrate robot.urdf measurements.csv --out out --force", "out/report.html: found a link");
 }
 
 #[test]
@@ -170,20 +166,13 @@ fn others_files_stay_and_the_mode_of_the_folder_too() {
     fs::create_dir(folder.path("out/photos")).unwrap();
     folder.write("out/photos/1.jpg", "mine");
     folder.run_to_success(calibrate);
-    assert_eq!(
-        (folder.read("out/notes.txt"), folder.read("out/photos/1.jpg")),
-        ("mine".into(), "mine".into())
-    );
+    assert_eq!((folder.read("out/notes.txt"), folder.read("out/photos/1.jpg")), ("mine".into(), "mine".into()));
     // An empty folder, as a container's mount is, needs no --force; one with a file of others does.
     fs::create_dir(folder.path("empty")).unwrap();
     folder.run_to_success("calibrate robot.urdf measurements.csv --out empty");
     fs::create_dir(folder.path("theirs")).unwrap();
     folder.write("theirs/notes.txt", "mine");
-    assert_refused(
-        &folder,
-        "calibrate robot.urdf measurements.csv --out theirs",
-        "theirs: the output folder exists",
-    );
+    assert_refused(&folder, "calibrate robot.urdf measurements.csv --out theirs", "theirs: the output folder exists");
 }
 
 #[test]
@@ -204,8 +193,7 @@ fn what_an_interrupted_run_left_is_settled_and_said() {
     let run = folder.run("calibrate robot.urdf measurements.csv --out out --force");
     assert_eq!(run.code, 0, "{}", run.err);
     assert!(
-        !folder.path(".out.poecal-unfinished-78-3").exists()
-            && !folder.path("out/.poecal-unfinished-77-0").exists()
+        !folder.path(".out.poecal-unfinished-78-3").exists() && !folder.path("out/.poecal-unfinished-77-0").exists()
     );
     assert!(folder.path("out/.poecal-unfinished-of-mine").exists());
     // Killed while files were put in place: the next run completes it, even one that is refused.
@@ -241,9 +229,7 @@ fn what_somebody_planted_leads_nowhere() {
     folder.write("victim/thesis.tex", "theirs");
     folder.write("out/thesis.tex", "mine");
     // Links in place of the remains of a run, inside and beside, for a folder and for a file.
-    for unfinished in
-        ["out/.poecal-unfinished-1-0", ".out.poecal-unfinished-1-0", ".new.toml.poecal-unfinished-1-0"]
-    {
+    for unfinished in ["out/.poecal-unfinished-1-0", ".out.poecal-unfinished-1-0", ".new.toml.poecal-unfinished-1-0"] {
         fs::create_dir_all(folder.path(unfinished)).unwrap();
         symlink(folder.path("victim"), folder.path(unfinished).join("new")).unwrap();
         symlink(folder.path("victim/made"), folder.path(unfinished).join("lock")).unwrap();
@@ -255,8 +241,7 @@ fn what_somebody_planted_leads_nowhere() {
     folder.run("calibrate robot.urdf measurements.csv --out out");
     folder.run_to_success("calibrate robot.urdf measurements.csv --out out --force");
     folder.run_to_success("export robot.urdf --out new.toml");
-    let names: Vec<_> =
-        fs::read_dir(folder.path("victim")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let names: Vec<_> = fs::read_dir(folder.path("victim")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(names.len(), 2, "{names:?}");
     assert_eq!(
         (folder.read("victim/calibration.json"), folder.read("out/thesis.tex")),
@@ -275,7 +260,8 @@ fn what_was_changed_since_an_interrupted_run_stays() {
         fs::hard_link(folder.path("out").join(name), folder.path(unfinished).join("old").join(name)).unwrap();
         folder.write(&format!("{unfinished}/new/{name}"), "new");
     }
-    let text = "poecal-journal-1\nput calibration.json\nput residuals.csv\nadd calibrated.toml\nremove report.html\nend\n";
+    let text =
+        "poecal-journal-1\nput calibration.json\nput residuals.csv\nadd calibrated.toml\nremove report.html\nend\n";
     folder.write(&format!("{unfinished}/journal"), text);
     folder.write(&format!("{unfinished}/new/calibrated.toml"), "new");
     // A backup was put back, a model made by hand, and a report written anew.
@@ -297,11 +283,7 @@ fn a_report_named_inside_the_results_is_one_of_them() {
     assert!(folder.read("out/report.html").contains("<!DOCTYPE html>"));
     folder.run_to_success(&format!("{calibrate} ./out/../out/page.html"));
     assert!(folder.path("out/page.html").exists() && !folder.path("out/report.html").exists());
-    assert_refused(
-        &folder,
-        &format!("{calibrate} out/calibration.json"),
-        "found the place of another result",
-    );
+    assert_refused(&folder, &format!("{calibrate} out/calibration.json"), "found the place of another result");
     assert_refused(&folder, &format!("{calibrate} out"), "found the folder of the results");
     assert_refused(
         &folder,
@@ -317,8 +299,7 @@ fn results_are_there_when_nobody_can_be_told() {
     let folder = session(SessionKind::POINT);
     let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     for more in ["", " --json"] {
-        let run = folder
-            .run_into(&format!("calibrate robot.urdf measurements.csv --out out --force{more}"), full());
+        let run = folder.run_into(&format!("calibrate robot.urdf measurements.csv --out out --force{more}"), full());
         assert_eq!(run.code, 1, "{}", run.err);
         assert!(run.err.contains("; what was to be written is in out"), "{}", run.err);
         assert!(folder.path("out/calibration.json").exists());
@@ -348,17 +329,12 @@ fn of_two_writers_one_wins_and_results_are_never_mixed() {
         folder.run_to_success(&format!("{command} --out {out}"));
         whole.push(["calibration.json", "residuals.csv"].map(|name| folder.read(&format!("{out}/{name}"))));
     }
-    let read =
-        |out: &str| ["calibration.json", "residuals.csv"].map(|name| folder.read(&format!("{out}/{name}")));
+    let read = |out: &str| ["calibration.json", "residuals.csv"].map(|name| folder.read(&format!("{out}/{name}")));
     for round in 0..20 {
         let out = format!("new{round}");
-        let (codes, said) =
-            at_once(&folder, [&format!("{one} --out {out}"), &format!("{other} --out {out}")]);
+        let (codes, said) = at_once(&folder, [&format!("{one} --out {out}"), &format!("{other} --out {out}")]);
         assert_eq!(codes, [0, 2], "{said}");
-        assert!(
-            said.contains("the output folder exists") || said.contains("found the folder in use by"),
-            "{said}"
-        );
+        assert!(said.contains("the output folder exists") || said.contains("found the folder in use by"), "{said}");
         assert!(whole.contains(&read(&out)), "mixed");
         fs::remove_dir_all(folder.path(&out)).unwrap();
     }
@@ -383,8 +359,7 @@ fn of_two_writers_one_wins_and_results_are_never_mixed() {
 fn is_ignored(number: u32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
-        .is_some_and(|mask| (mask >> (number - 1)) & 1 == 1)
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| (mask >> (number - 1)) & 1 == 1)
 }
 
 #[test]
@@ -396,9 +371,7 @@ fn a_signal_cleans_up() {
             continue;
         }
         let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
-        command
-            .args("reproduce lou2009 --trials 100000 --out paper".split_whitespace())
-            .current_dir(folder.path("."));
+        command.args("reproduce lou2009 --trials 100000 --out paper".split_whitespace()).current_dir(folder.path("."));
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         let has_begun = || {
             let names = fs::read_dir(folder.path(".")).unwrap().map(|entry| entry.unwrap().file_name());
@@ -424,9 +397,8 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
     fs::create_dir(folder.path("outside")).unwrap();
     symlink("../outside", folder.path("cell/link")).unwrap();
     let settings = |lines: &str| {
-        let text = format!(
-            "poecal_settings = 1\nmodel = '../robot.urdf'\nmeasurements = ['../measurements.csv']\n{lines}\n"
-        );
+        let text =
+            format!("poecal_settings = 1\nmodel = '../robot.urdf'\nmeasurements = ['../measurements.csv']\n{lines}\n");
         folder.write("cell/poecal.toml", text);
     };
     let absolute = folder.path("outside/x");
@@ -447,10 +419,7 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
     settings("out = '../outside/x'");
     folder.run_to_success("calibrate --settings cell/poecal.toml --out typed");
     // Settings are an input, read by default or not.
-    folder.write(
-        "poecal.toml",
-        "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\n",
-    );
+    folder.write("poecal.toml", "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\n");
     assert_refused(
         &folder,
         "calibrate --out by_default --report poecal.toml --force",

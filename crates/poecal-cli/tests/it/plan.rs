@@ -14,9 +14,8 @@ fn folder() -> Folder {
 #[test]
 fn a_planned_list_is_read_and_completed() {
     let folder = folder();
-    let out = folder.run_to_success(
-        "plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm",
-    );
+    let out =
+        folder.run_to_success("plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm");
     for words in [
         "planned       12 configurations to fit, 4 at random to judge by, 0 returns to\n",
         "expected      ",
@@ -54,17 +53,14 @@ fn a_planned_list_is_read_and_completed() {
 #[test]
 fn replaced_rows_leave_the_others_in_their_places() {
     let folder = folder();
-    folder.run_to_success(
-        "plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm",
-    );
+    folder.run_to_success("plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm");
     let before = folder.read("joints.csv");
     let out = folder.run_to_success(
         "plan column.toml --keep-rows joints.csv --replace-rows 3,15 --out better.csv --report plan.html",
     );
     assert!(out.contains("1 configurations to fit beside 11 kept ones, 8 at random"), "{out}");
-    let rows = |text: &str| -> Vec<String> {
-        text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
-    };
+    let rows =
+        |text: &str| -> Vec<String> { text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect() };
     let (before, after) = (rows(&before), rows(&folder.read("better.csv")));
     let changed: Vec<usize> = (0..before.len()).filter(|&row| before[row] != after[row]).collect();
     println!("changed lines {changed:?} of {}", before.len());
@@ -95,10 +91,7 @@ fn what_cannot_be_planned_is_refused_with_a_reason() {
     let err = refused("plan column.toml --count 12 --device 0,0,90000mm --distance 1mm:2mm --out joints.csv");
     assert!(err.contains("by the device's distances, expected at least the 12 of the plan"), "{err}");
     let err = refused("plan column.toml --kind socket --out joints.csv");
-    assert!(
-        err.contains("found the kind `socket`, expected one whose configurations can be chosen freely"),
-        "{err}"
-    );
+    assert!(err.contains("found the kind `socket`, expected one whose configurations can be chosen freely"), "{err}");
     let err = refused("plan column.toml --keep-out 1,2,3 --out joints.csv");
     assert!(err.contains("expected two corners with a unit behind the last"), "{err}");
     assert!(!folder.path("joints.csv").exists());
@@ -131,16 +124,15 @@ fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
     let planned = |words: &str| {
-        let run = folder
-            .run(&format!("plan robot.urdf --count 40 --held-out-count 20 --force --out joints.csv {words}"));
+        let run =
+            folder.run(&format!("plan robot.urdf --count 40 --held-out-count 20 --force --out joints.csv {words}"));
         assert_eq!(run.code, 0, "{}", run.err);
         let text = folder.read("joints.csv");
         let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
         let of = |row: &str| row.split(',').skip(3).map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
         let rows: Vec<Vec<f64>> = rows.map(of).collect();
         let extreme = |joint: usize| {
-            rows.iter()
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it[joint]), b.max(it[joint])])
+            rows.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it[joint]), b.max(it[joint])])
         };
         (run, [extreme(1), extreme(5)])
     };
@@ -164,12 +156,5 @@ fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let (run, [second, _]) = planned("");
     let words = "every joint has the limits -401 to 401 deg, which are placeholders";
     assert!(run.err.contains(words) && second[0] >= -180.0 && second[1] <= 180.0, "{second:?} {}", run.err);
-    assert!(
-        folder
-            .run_to_success("check robot.urdf")
-            .split_whitespace()
-            .collect::<Vec<_>>()
-            .join(" ")
-            .contains(words)
-    );
+    assert!(folder.run_to_success("check robot.urdf").split_whitespace().collect::<Vec<_>>().join(" ").contains(words));
 }

@@ -13,9 +13,7 @@ pub(crate) fn root() -> PathBuf {
 /// Runs the program with these words, and results in `out`.
 pub(crate) fn run(words: &str, out: &Path) -> Run {
     let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
-    Run::new(
-        command.current_dir(root()).args(words.split_whitespace()).arg("--out").arg(out).output().unwrap(),
-    )
+    Run::new(command.current_dir(root()).args(words.split_whitespace()).arg("--out").arg(out).output().unwrap())
 }
 
 /// Output of a run that must succeed.

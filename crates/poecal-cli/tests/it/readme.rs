@@ -17,9 +17,7 @@ fn without_rounding_errors(text: &str) -> String {
     for line in text.lines() {
         let words: Vec<&str> = line.split(' ').collect();
         let is_tiny = |word: &str| word.contains("e-1") && word.parse().is_ok_and(|value: f64| value < 1e-12);
-        lines.push(
-            words.iter().map(|word| if is_tiny(word) { "#" } else { word }).collect::<Vec<_>>().join(" "),
-        );
+        lines.push(words.iter().map(|word| if is_tiny(word) { "#" } else { word }).collect::<Vec<_>>().join(" "));
     }
     lines.join("\n")
 }

@@ -51,8 +51,7 @@ pub(crate) fn join_numbers(values: &[f64], digits: usize, separator: &str) -> St
 /// poecal's own form, with points or poses.
 fn own_form(rows: &[Row], is_posed: bool) -> String {
     let mut text =
-        "id,joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg],x[mm],y[mm],z[mm]"
-            .to_owned();
+        "id,joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg],x[mm],y[mm],z[mm]".to_owned();
     text += if is_posed { ",qx,qy,qz,qw\n" } else { "\n" };
     for (k, (joints, place, turn)) in rows.iter().enumerate() {
         write!(text, "P{},{},{}", k + 1, join_numbers(joints, 9, ","), join_numbers(place, 6, ",")).unwrap();
@@ -85,13 +84,11 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
         )
     });
     let krl = each(&|k, row| {
-        let axes: Vec<String> =
-            row.0.iter().enumerate().map(|(at, it)| format!("A{} {it:.9}", at + 1)).collect();
+        let axes: Vec<String> = row.0.iter().enumerate().map(|(at, it)| format!("A{} {it:.9}", at + 1)).collect();
         format!("DECL E6AXIS XP{k}={{{},E1 0.0,E2 0.0,E3 0.0,E4 0.0,E5 0.0,E6 0.0}}\n", axes.join(","))
     });
     let positions = each(&|k, row| {
-        let axes: Vec<String> =
-            row.0.iter().enumerate().map(|(at, it)| format!("J{}= {it:.9} deg", at + 1)).collect();
+        let axes: Vec<String> = row.0.iter().enumerate().map(|(at, it)| format!("J{}= {it:.9} deg", at + 1)).collect();
         format!("P[{k}]{{\n   GP1:\n\tUF : 0, UT : 1,\n\t{}\n}};\n", axes.join(",\n\t"))
     });
     let moves = each(&|k, _| format!("   {k}:J P[{k}] 20% FINE ;\n"));
@@ -110,10 +107,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
         (
             "rokae.mod",
             each(&|k, row| {
-                format!(
-                    "LOCAL VAR jointtarget j{k} = j:{{{} ,0}}{{EJ 0,0,0,0,0,0}}\n",
-                    join_numbers(&row.0, 9, ",")
-                )
+                format!("LOCAL VAR jointtarget j{k} = j:{{{} ,0}}{{EJ 0,0,0,0,0,0}}\n", join_numbers(&row.0, 9, ","))
             }),
         ),
         ("krl.dat", format!("&ACCESS RVP\nDEFDAT CALIB\n{krl}ENDDAT\n")),
@@ -123,14 +117,10 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
         ("bare.txt", each(&|_, row| join_numbers(&row.0, 9, " ") + "\n")),
         (
             "turned.csv",
-            format!(
-                "A1;A2;A3;A4;A5;A6\n{}",
-                each(&|_, row| join_numbers(&row.0, 9, ";").replace('.', ",") + ";\n")
-            ),
+            format!("A1;A2;A3;A4;A5;A6\n{}", each(&|_, row| join_numbers(&row.0, 9, ";").replace('.', ",") + ";\n")),
         ),
     ];
-    let comments =
-        "// SpatialAnalyzer SA 2024.2\n// Points Relative to Coordinate Frame 'A::WORLD'\n// AXES = ";
+    let comments = "// SpatialAnalyzer SA 2024.2\n// Points Relative to Coordinate Frame 'A::WORLD'\n// AXES = ";
     let cylindrical = each(&|k, row| {
         let [x, y, z] = row.1;
         format!("Robot,  P{k},  {:.9},  {:.12},  {z:.6}\n", x.hypot(y), y.atan2(x).to_degrees())
@@ -172,10 +162,7 @@ fn forms(rows: &[Row]) -> (Vec<Named>, Vec<Named>) {
             "leica.csv",
             format!(
                 "X  [mm],Y  [mm],Z  [mm],U(95)  [mm],Image RMS  [\u{b5}m],Temperature  [\u{b0}C],Time Stamp,Delete\n{}",
-                each(&|_, row| format!(
-                    "{},0.18,0.24,22.6,'11.10.2022 10:00:00.000,\n",
-                    join_numbers(&row.1, 6, ",")
-                ))
+                each(&|_, row| format!("{},0.18,0.24,22.6,'11.10.2022 10:00:00.000,\n", join_numbers(&row.1, 6, ",")))
             ),
         ),
     ];
@@ -195,11 +182,9 @@ fn every_pair_of_forms_gives_the_calibration_of_our_own() {
         fs::write(folder.path(name), bytes).unwrap();
     }
     let utf16 = measured[0].1.replace('\n', "\r\n");
-    let wide: Vec<u8> =
-        std::iter::once(0xfeff).chain(utf16.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    let wide: Vec<u8> = std::iter::once(0xfeff).chain(utf16.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     fs::write(folder.path("wide.txt"), wide).unwrap();
-    let pairs =
-        joints.iter().map(|it| (it.0, "group.txt")).chain(measured.iter().map(|it| ("rapid.mod", it.0)));
+    let pairs = joints.iter().map(|it| (it.0, "group.txt")).chain(measured.iter().map(|it| ("rapid.mod", it.0)));
     for (one, other) in pairs.chain([("rapid.mod", "wide.txt")]) {
         let (found, said) = held_out(&folder, &format!("{one} {other}"));
         println!("{one} {other}: {found:.6} mm, {expected:.6} in our form");
@@ -270,8 +255,7 @@ fn files_of_other_tools_are_whole_sessions() {
         )
         .unwrap();
         let fixed = angles(turn, false).map(f64::to_degrees);
-        let cells =
-            [join_numbers(place, 6, "\t"), join_numbers(&fixed, 10, "\t"), join_numbers(joints, 9, "\t")];
+        let cells = [join_numbers(place, 6, "\t"), join_numbers(&fixed, 10, "\t"), join_numbers(joints, 9, "\t")];
         writeln!(auto_id, "P{}\t{}", k + 1, cells.join("\t")).unwrap();
     }
     fs::write(folder.path("robodk.csv"), robodk).unwrap();
@@ -293,9 +277,7 @@ fn the_one_sheet_with_a_table_is_read_and_its_cells_are_named() {
     let mut sheet: Vec<Vec<String>> = vec![vec!["Messprotokoll".to_owned()], Vec::new()];
     sheet.push(["Nr.", "A1", "A2", "A3", "A4", "A5", "A6", "X", "Y", "Z"].map(str::to_owned).to_vec());
     sheet.push(
-        ["", "\u{b0}", "\u{b0}", "\u{b0}", "\u{b0}", "\u{b0}", "\u{b0}", "mm", "mm", "mm"]
-            .map(str::to_owned)
-            .to_vec(),
+        ["", "\u{b0}", "\u{b0}", "\u{b0}", "\u{b0}", "\u{b0}", "\u{b0}", "mm", "mm", "mm"].map(str::to_owned).to_vec(),
     );
     for (k, (joints, place, _)) in rows.iter().enumerate() {
         let numbers = joints.iter().chain(place).map(|it| format!("{it}"));
@@ -355,8 +337,7 @@ fn what_has_one_part_alone_or_none_is_named() {
     }
     let pulses = "/JOB\n//NAME CALIB\n//POS\n///PULSE\nC00000=85426,196440,95242,173936,5561,72128\n";
     fs::write(folder.path("calib.jbi"), pulses).unwrap();
-    fs::write(folder.path("poses.script"), "def a():\n  movel(p[0.4,0.1,0.3,0,3.1,0], a=1, v=0.2)\nend\n")
-        .unwrap();
+    fs::write(folder.path("poses.script"), "def a():\n  movel(p[0.4,0.1,0.3,0,3.1,0], a=1, v=0.2)\nend\n").unwrap();
     fs::write(folder.path("bag.db3"), b"SQLite format 3\0rest").unwrap();
     fs::write(folder.path("old.bag"), b"#ROSBAG V2.0\nrest of it").unwrap();
     fs::write(folder.path("wall.mat"), b"MATLAB 5.0 MAT-file, Platform: GLNXA64").unwrap();
@@ -440,12 +421,8 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
         for motion in ["robot_motion", "measured_motion"] {
             let motion = &join[motion];
             assert_eq!(motion["stands_s"].as_array().unwrap().len(), 26);
-            let speeds: Vec<f64> = motion["speeds_mm_s"]
-                .as_array()
-                .unwrap()
-                .iter()
-                .filter_map(serde_json::Value::as_f64)
-                .collect();
+            let speeds: Vec<f64> =
+                motion["speeds_mm_s"].as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect();
             let still = speeds.iter().filter(|it| **it < 5.0).count();
             // Static intervals take 55 % of the time.
             assert!(
@@ -470,9 +447,8 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
     let run = folder.run(&format!("check {MODEL} robot_data.csv two.csv"));
     assert_eq!(run.code, 2);
     assert!(
-        run.err.contains(
-            "found 2 bodies that move, `Table`, `Tool`, expected one: name the one on the robot by --body"
-        ),
+        run.err
+            .contains("found 2 bodies that move, `Table`, `Tool`, expected one: name the one on the robot by --body"),
         "{}",
         run.err
     );
@@ -510,10 +486,7 @@ fn no_damage_to_a_file_of_another_form_makes_reading_panic() {
     }
     let sheet: Vec<Vec<String>> =
         std::iter::once(["A1", "A2", "A3", "A4", "A5", "A6", "X", "Y", "Z"].map(str::to_owned).to_vec())
-            .chain(
-                rows.iter()
-                    .map(|(joints, place, _)| joints.iter().chain(place).map(|it| format!("{it}")).collect()),
-            )
+            .chain(rows.iter().map(|(joints, place, _)| joints.iter().chain(place).map(|it| format!("{it}")).collect()))
             .collect();
     let book = workbook(&[("Messung", &sheet)]);
     let path = folder.path("damaged.xlsx");

@@ -24,7 +24,9 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
         let radians: Vec<f64> = joints.iter().map(|it| it.to_radians()).collect();
         writeln!(log, "{:.6},{}", 12_621.061 + time, join_numbers(&radians, 9, ",")).unwrap();
     }
-    let mut take = "Format Version,1.24,Take Name,A,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n".to_owned();
+    let mut take =
+        "Format Version,1.24,Take Name,A,Export Frame Rate,100.0,Rotation Type,Quaternion,Length Units,Millimeters\n\n"
+            .to_owned();
     let head = |label: &str, of: &dyn Fn(usize) -> String| {
         format!("{label}{}\n", (0..17).map(of).collect::<Vec<_>>().join(","))
     };
@@ -34,11 +36,7 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
     take += &head(",ID,", &|k| format!("\"{k}\""));
     take += &head(",,", &|k| if k < 14 && k % 7 < 4 { "Rotation".to_owned() } else { "Position".to_owned() });
     take += &head("Frame,Time (Seconds),", &|k| {
-        if k < 14 {
-            ["X", "Y", "Z", "W", "X", "Y", "Z"][k % 7].to_owned()
-        } else {
-            ["X", "Y", "Z"][k - 14].to_owned()
-        }
+        if k < 14 { ["X", "Y", "Z", "W", "X", "Y", "Z"][k % 7].to_owned() } else { ["X", "Y", "Z"][k - 14].to_owned() }
     });
     let mut qualisys = "NO_OF_FRAMES\t1\nNO_OF_BODIES\t1\nFREQUENCY\t100\nDATA_INCLUDED\t6D\nBODY_NAMES\tTool\nFrame\tTime\tTool X\tY\tZ\tRoll\tPitch\tYaw\tResidual\t".to_owned();
     qualisys += &(0..9).map(|k| format!("Rot[{k}]")).collect::<Vec<_>>().join("\t");
@@ -65,8 +63,7 @@ pub(crate) fn recordings(rows: &[Row]) -> Recordings {
             2.0 * (y * z - x * w),
             1.0 - 2.0 * (x * x + y * y),
         ];
-        let angles =
-            [(-m[7]).atan2(m[8]), m[6].clamp(-1.0, 1.0).asin(), (-m[3]).atan2(m[0])].map(f64::to_degrees);
+        let angles = [(-m[7]).atan2(m[8]), m[6].clamp(-1.0, 1.0).asin(), (-m[3]).atan2(m[0])].map(f64::to_degrees);
         let zeros = [0.0; 16];
         let cells = [&place[..], &angles, &[0.3], &m].concat();
         let cells = if is_lost { &zeros[..] } else { &cells };
@@ -130,11 +127,7 @@ fn recordings_that_do_not_belong_together_are_refused_without_a_lag() {
     for files in ["exchanged.csv take.csv", "log.csv other.csv"] {
         let run = folder.run(&format!("calibrate {MODEL} {files} --join motion --out out --quiet"));
         assert_eq!((run.code, run.err.lines().count()), (2, 1), "{files}: {}", run.err);
-        assert!(
-            run.err.contains("at no lag of the clocks") && !run.err.contains("like --lag"),
-            "{}",
-            run.err
-        );
+        assert!(run.err.contains("at no lag of the clocks") && !run.err.contains("like --lag"), "{}", run.err);
     }
 }
 
@@ -184,8 +177,7 @@ fn a_frame_that_strayed_is_named_and_changes_no_stand() {
     fs::write(folder.path("strayed.csv"), strayed).unwrap();
     let (found, said) = table("found.csv", "log.csv strayed.csv");
     assert!(said.contains("strayed.csv: left out 1 row up to"), "{said}");
-    let numbers =
-        |text: &str| -> Vec<f64> { text.split([',', '\n']).filter_map(|it| it.parse().ok()).collect() };
+    let numbers = |text: &str| -> Vec<f64> { text.split([',', '\n']).filter_map(|it| it.parse().ok()).collect() };
     let (one, other) = (numbers(&expected), numbers(&found));
     let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!("{apart:.6} mm");
@@ -240,16 +232,10 @@ fn words_and_cut_rows_are_no_lost_frames() {
 #[test]
 fn a_table_of_rows_at_rest_is_refused_before_files_are_joined_in_motion() {
     let (folder, _) = folder_with_recordings();
-    assert_refused(
-        &folder,
-        &[("log.csv take.csv --join motion", "found --join motion, expected rows at rest")],
-    );
+    assert_refused(&folder, &[("log.csv take.csv --join motion", "found --join motion, expected rows at rest")]);
     let text = "time[ms],joint1\n";
     fs::write(folder.path("broken.csv"), text).unwrap();
-    assert_refused(
-        &folder,
-        &[("broken.csv take.csv --join motion", "found --join motion, expected rows at rest")],
-    );
+    assert_refused(&folder, &[("broken.csv take.csv --join motion", "found --join motion, expected rows at rest")]);
 }
 
 #[test]

@@ -46,9 +46,8 @@ fn every_form_of_angles_that_is_named_has_names_of_columns() {
     for form in 0..5 {
         let header = if form == 4 { "A[deg],B[deg],C[deg]" } else { "rx[deg],ry[deg],rz[deg]" };
         let write = |header: &str| {
-            let all = rows
-                .iter()
-                .map(|(arm, board)| [place(arm, 1e3), angles(form, arm), camera_numbers(board)].concat());
+            let all =
+                rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(form, arm), camera_numbers(board)].concat());
             table(&folder, "poses.csv", &format!("x[mm],y[mm],z[mm],{header},{SEEN}"), all);
         };
         write(header);
@@ -61,9 +60,7 @@ fn every_form_of_angles_that_is_named_has_names_of_columns() {
     }
     // Names of makers that need no message.
     for (form, header) in [(0, "U,V,W"), (3, "A,E,R"), (2, "intrinsic_x,intrinsic_y,intrinsic_z")] {
-        let all = rows
-            .iter()
-            .map(|(arm, board)| [place(arm, 1e3), angles(form, arm), camera_numbers(board)].concat());
+        let all = rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(form, arm), camera_numbers(board)].concat());
         table(&folder, "poses.csv", &format!("X,Y,Z,{header},{SEEN}"), all);
         is_found(&folder, "hand-eye poses.csv --camera in-hand --json");
     }
@@ -73,19 +70,13 @@ fn every_form_of_angles_that_is_named_has_names_of_columns() {
 fn units_of_rotation_vectors_are_stated_as_the_message_says() {
     let folder = Folder::new();
     let rows = session(20);
-    let all =
-        rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(4, arm), camera_numbers(board)].concat());
+    let all = rows.iter().map(|(arm, board)| [place(arm, 1e3), angles(4, arm), camera_numbers(board)].concat());
     table(&folder, "poses.csv", &format!("X,Y,Z,RX,RY,RZ,{SEEN}"), all);
     let run = folder.run("hand-eye poses.csv --camera in-hand --units mm --json");
-    assert!(
-        run.code == 2 && run.err.contains("write `[deg]` behind its name, or --units deg"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 2 && run.err.contains("write `[deg]` behind its name, or --units deg"), "{}", run.err);
     is_found(&folder, "hand-eye poses.csv --camera in-hand --units mm,deg --json");
     // OpenCV's are radians, in spite of any stated unit.
-    let degrees =
-        |board: &Pose| [rvec(board).into_iter().map(f64::to_degrees).collect(), place(board, 1e3)].concat();
+    let degrees = |board: &Pose| [rvec(board).into_iter().map(f64::to_degrees).collect(), place(board, 1e3)].concat();
     let all = rows.iter().map(|(arm, board)| [place(arm, 1e3), abc(arm).to_vec(), degrees(board)].concat());
     table(&folder, "poses.csv", "X,Y,Z,A,B,C,rvec_x,rvec_y,rvec_z,tvec_x,tvec_y,tvec_z", all);
     let run = folder.run("hand-eye poses.csv --camera in-hand --units mm,deg --json");
@@ -94,8 +85,7 @@ fn units_of_rotation_vectors_are_stated_as_the_message_says() {
         "{}",
         run.err
     );
-    let text =
-        folder.read("poses.csv").replacen("rvec_x,rvec_y,rvec_z", "rvec_x[deg],rvec_y[deg],rvec_z[deg]", 1);
+    let text = folder.read("poses.csv").replacen("rvec_x,rvec_y,rvec_z", "rvec_x[deg],rvec_y[deg],rvec_z[deg]", 1);
     folder.write("poses.csv", text);
     is_found(&folder, "hand-eye poses.csv --camera in-hand --units mm --json");
 }
@@ -105,9 +95,9 @@ fn the_scale_of_a_board_is_that_of_the_sentence_from_a_tenth_to_ten_times() {
     let folder = Folder::new();
     let rows = session(20);
     let write = |times: f64| {
-        let all = rows.iter().map(|(arm, board)| {
-            [place(arm, 1e3), abc(arm).to_vec(), rvec(board), place(board, 1e3 * times)].concat()
-        });
+        let all = rows
+            .iter()
+            .map(|(arm, board)| [place(arm, 1e3), abc(arm).to_vec(), rvec(board), place(board, 1e3 * times)].concat());
         table(&folder, "poses.csv", &format!("X,Y,Z,A,B,C,{SEEN}"), all);
     };
     for (times, part) in [
@@ -141,8 +131,7 @@ fn a_mapping_of_what_was_measured_leaves_lists_of_joints_as_they_are() {
         .skip(1)
         .map(|line| line.split(',').skip(3).take(9).map(|it| it.parse().unwrap()).collect())
         .collect();
-    let degrees =
-        |row: &[f64]| row[..6].iter().map(|it| format!("{:.6}", it.to_degrees())).collect::<Vec<_>>();
+    let degrees = |row: &[f64]| row[..6].iter().map(|it| format!("{:.6}", it.to_degrees())).collect::<Vec<_>>();
     let lines = |of: &dyn Fn(usize, &[f64]) -> String| -> String {
         rows.iter().enumerate().map(|(at, row)| of(at + 1, row) + "\n").collect()
     };
@@ -157,17 +146,13 @@ fn a_mapping_of_what_was_measured_leaves_lists_of_joints_as_they_are() {
     folder.write("metres.txt", tracker(1.0));
     folder.write(
         "targets.txt",
-        lines(&|at, row| {
-            format!("LOCAL VAR jointtarget p{at} = j:{{{},0}}{{EJ 0,0,0,0,0,0}}", degrees(row).join(","))
-        }),
+        lines(&|at, row| format!("LOCAL VAR jointtarget p{at} = j:{{{},0}}{{EJ 0,0,0,0,0,0}}", degrees(row).join(","))),
     );
     folder.write("bare.csv", lines(&|_, row| degrees(row).join(",")));
     folder.write(
         "log.csv",
         "time,joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg],a,b,c\n".to_owned()
-            + &lines(&|at, row| {
-                format!("{at},{},{:.4},{:.4},{:.4}", degrees(row).join(","), at as f64, 2.0, 3.0)
-            }),
+            + &lines(&|at, row| format!("{at},{},{:.4},{:.4},{:.4}", degrees(row).join(","), at as f64, 2.0, 3.0)),
     );
     for joints in ["targets.txt", "bare.csv", "log.csv"] {
         let run = folder.run(&format!("calibrate robot.urdf {joints} tracker.txt --out results"));

@@ -53,8 +53,7 @@ fn a_move_during_the_session_is_repaired_and_said() {
 
     // Other rows are judged by the state that fits.
     let judged = |name: &str| -> Value {
-        let text =
-            folder.run_to_success(&format!("validate knocked/calibration.json {name} --json --history none"));
+        let text = folder.run_to_success(&format!("validate knocked/calibration.json {name} --json --history none"));
         serde_json::from_str(&text).unwrap()
     };
     for (name, stage) in [("judge.csv", 1), ("after.csv", 2)] {

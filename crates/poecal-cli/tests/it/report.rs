@@ -12,10 +12,7 @@ fn calibrate_writes_the_report_where_it_is_asked_to() {
     assert!(out.ends_with("poecal-out: open report.html; 3 files beside it\n"), "{out}");
     let page = folder.read("poecal-out/report.html");
     let out = folder.run_to_success("calibrate robot.urdf measurements.csv --out other --report page.html");
-    assert!(
-        out.ends_with("report        page.html\n") && !folder.path("other/report.html").exists(),
-        "{out}"
-    );
+    assert!(out.ends_with("report        page.html\n") && !folder.path("other/report.html").exists(), "{out}");
     assert!(folder.read("page.html") == page, "another place is another page");
     let out = folder.run_to_success("calibrate robot.urdf measurements.csv --force --report none");
     assert!(!out.contains("report"), "{out}");
@@ -53,9 +50,7 @@ fn the_report_made_again_is_the_same() {
 #[test]
 fn a_report_states_the_session() {
     let folder = session(SessionKind::POINT);
-    folder.run_to_success(
-        "calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga",
-    );
+    folder.run_to_success("calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga");
     folder.run_to_success("report poecal-out/calibration.json --record operator=Quirin -o page.html");
     let page = folder.read("page.html");
     assert!(page.contains("4711") && page.contains(">Quirin<") && !page.contains(">Walburga<"));
@@ -66,14 +61,9 @@ fn a_report_states_the_session() {
 #[test]
 fn the_file_names_what_it_was_made_of_and_how() {
     let folder = session(SessionKind::POINT);
-    folder.run_to_success(
-        "calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none",
-    );
+    folder.run_to_success("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");
     let inputs = calibration(&folder, "a").inputs;
-    assert_eq!(
-        inputs.command.as_deref(),
-        Some("poecal calibrate robot.urdf measurements.csv --held-out=0.2")
-    );
+    assert_eq!(inputs.command.as_deref(), Some("poecal calibrate robot.urdf measurements.csv --held-out=0.2"));
     let names: Vec<&str> = inputs.sha256.keys().map(String::as_str).collect();
     assert_eq!(names, ["measurements.csv", "robot.urdf"]);
     let hash = &inputs.sha256["robot.urdf"];

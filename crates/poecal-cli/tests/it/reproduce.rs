@@ -74,10 +74,8 @@ fn reproduction_refuses_what_it_cannot_do() {
 fn every_formulation_can_be_chosen() {
     let folder = session(SessionKind::POINT);
     let mut predictions = Vec::new();
-    folder.write(
-        "joints.csv",
-        "joint1,joint2,joint3,joint4,joint5,joint6\n0.3,-0.4,0.9,1,0.2,-3\n1.3,0.4,-0.7,0,1,2\n",
-    );
+    folder
+        .write("joints.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.3,-0.4,0.9,1,0.2,-3\n1.3,0.4,-0.7,0,1,2\n");
     for (formulation, method, unknowns) in [
         ("adjoint", "levenberg-marquardt", 27),
         ("screw", "gauss-newton", 39),
@@ -94,8 +92,7 @@ fn every_formulation_can_be_chosen() {
         assert_eq!(file["solver"]["joint_offsets"].is_array(), formulation.ends_with("offsets"));
         println!("{formulation}: {} iterations", file["solver"]["iterations"]);
         assert!(file["identifiability"]["parameters"] == unknowns);
-        predictions
-            .push(folder.run_to_success(&format!("predict {formulation}/calibration.json joints.csv")));
+        predictions.push(folder.run_to_success(&format!("predict {formulation}/calibration.json joints.csv")));
     }
     // Offsets are moved into the screws of the written models: the same robot, in both formulations.
     let numbers = |text: &str| -> Vec<f64> {
@@ -110,9 +107,8 @@ fn every_formulation_can_be_chosen() {
 #[test]
 fn residual_and_method_can_be_chosen() {
     let folder = session(SessionKind::POSE);
-    let out = folder.run_to_success(
-        "calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton --verbose",
-    );
+    let out = folder
+        .run_to_success("calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton --verbose");
     assert!(out.contains("formulation   adjoint, spatial residual of poses, gauss-newton"), "{out}");
     let run = folder.run("calibrate robot.urdf measurements.csv --formulation screws --out other");
     assert!(run.code == 2 && run.err.contains("screw"), "{run:?}");
@@ -126,8 +122,7 @@ fn a_residual_of_poses_says_that_points_have_none() {
     let words = "--residual spatial has no effect: it is about measured frames, and there are none";
     assert!(run.err.contains(words), "{}", run.err);
     assert!(!run.out.contains("residual of poses"), "{}", run.out);
-    let out = folder.run_to_success(
-        "calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets --verbose",
-    );
+    let out = folder
+        .run_to_success("calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets --verbose");
     assert!(out.contains("formulation   adjoint-offsets, levenberg-marquardt; joint offsets"), "{out}");
 }

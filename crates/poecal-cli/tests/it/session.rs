@@ -14,13 +14,7 @@ pub(crate) const ROBOT: &str = include_str!("../../../../examples/elbow/robot.ur
 pub(crate) fn session(kind: SessionKind) -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
-    write_measurements(
-        &folder,
-        "measurements.csv",
-        kind,
-        "",
-        &Simulation { count: 60, ..Simulation::default() },
-    );
+    write_measurements(&folder, "measurements.csv", kind, "", &Simulation { count: 60, ..Simulation::default() });
     folder
 }
 

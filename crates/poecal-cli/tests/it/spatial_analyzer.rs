@@ -15,11 +15,7 @@ fn points() -> (Folder, Vec<String>) {
     let mut lines = Vec::new();
     for (k, (joints, place, _)) in rows.iter().enumerate() {
         text += &format!("P{},{}\n", k + 1, join_numbers(joints, 6, ","));
-        lines.push(format!(
-            "Robot,  P{},  0,  {},  02/12/25 16:{k:02}:00",
-            k + 1,
-            join_numbers(place, 6, ",  ")
-        ));
+        lines.push(format!("Robot,  P{},  0,  {},  02/12/25 16:{k:02}:00", k + 1, join_numbers(place, 6, ",  ")));
     }
     fs::write(folder.path("joints.csv"), text).unwrap();
     (folder, lines)

@@ -79,8 +79,7 @@ fn files_that_were_measured_from_two_places_are_named_without_the_option() {
     let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     println!("{said}");
     assert!(
-        run.code == 0
-            && said.contains("repaired the files monday.csv and tuesday.csv do not share one device frame"),
+        run.code == 0 && said.contains("repaired the files monday.csv and tuesday.csv do not share one device frame"),
         "{said}"
     );
     assert!(said.contains("--device-frames per-file"), "{said}");
@@ -129,11 +128,7 @@ fn what_does_not_go_together_is_refused() {
     let folder = folder_with_moved_rows();
     let refused = |arguments: &str, sentence: &str| {
         let run = folder.run(&format!("calibrate robot.urdf {arguments} --out out"));
-        assert!(
-            run.code == 2 && run.err.ends_with(&format!("error: {sentence}\n")),
-            "{arguments}: {}",
-            run.err
-        );
+        assert!(run.code == 2 && run.err.ends_with(&format!("error: {sentence}\n")), "{arguments}: {}", run.err);
     };
     refused(
         "monday.csv tuesday.csv --device-frames per-file --device-frame base",
@@ -141,9 +136,8 @@ fn what_does_not_go_together_is_refused() {
          instruments' names out if all measure in the base frame, or --device-frame base if each has a frame of its own",
     );
     // The frame of held-out rows is estimated from these.
-    folder.run_to_success(
-        "calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged",
-    );
+    folder
+        .run_to_success("calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged");
     let columns = folder.read("both.csv").lines().next().unwrap().rfind("instrument").unwrap() + 1;
     refused(
         "both.csv --device-frames per-file",

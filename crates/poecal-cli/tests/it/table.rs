@@ -32,11 +32,7 @@ fn paragraphs(out: &str) -> Vec<(String, String)> {
 }
 
 fn paragraph(out: &str, label: &str) -> String {
-    paragraphs(out)
-        .into_iter()
-        .find(|(name, _)| name == label)
-        .unwrap_or_else(|| panic!("no {label} in\n{out}"))
-        .1
+    paragraphs(out).into_iter().find(|(name, _)| name == label).unwrap_or_else(|| panic!("no {label} in\n{out}")).1
 }
 
 /// Properties of every table: nothing twice, no long list, no line that is too wide.
@@ -59,14 +55,12 @@ fn folder_with_poor_rows() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
-    let made =
-        Simulation { count: 80, ..Simulation::default() }.run(&model.robot, SessionKind::POINT).unwrap();
+    let made = Simulation { count: 80, ..Simulation::default() }.run(&model.robot, SessionKind::POINT).unwrap();
     let mut text = format!("{},x,y,z\n", made.data.reading_names().join(","));
     for row in 0..made.data.len() {
         let readings = made.data.readings(row);
         let share = [0.3, 0.3, 0.3, 0.2, 0.2, 0.0];
-        let values: Vec<f64> =
-            readings.iter().zip(share).map(|(reading, share)| reading * share + 0.5).collect();
+        let values: Vec<f64> = readings.iter().zip(share).map(|(reading, share)| reading * share + 0.5).collect();
         let place = made.device_from_base * made.actual.forward_kinematics(&values);
         let [x, y, z]: [f64; 3] = place.translation.into();
         let beside = if row % 9 == 4 { 0.03 } else { 2e-5 * ((row * 37 % 11) as f64 - 5.0) };
@@ -92,11 +86,8 @@ fn the_first_command_prints_a_short_table() {
         assert!(!out.contains(word), "`{word}` is in\n{out}");
     }
     let order: Vec<String> = paragraphs(&out).into_iter().map(|(label, _)| label).collect();
-    let at = |label: &str| {
-        order.iter().position(|it| it.starts_with(label)).unwrap_or_else(|| panic!("{order:?}"))
-    };
-    let wanted =
-        ["verdict", "before", "after", "expected", "valid", "held out", "look at", "more", "next", "written"];
+    let at = |label: &str| order.iter().position(|it| it.starts_with(label)).unwrap_or_else(|| panic!("{order:?}"));
+    let wanted = ["verdict", "before", "after", "expected", "valid", "held out", "look at", "more", "next", "written"];
     assert!(wanted.windows(2).all(|two| at(two[0]) < at(two[1])), "{order:?}");
     assert!(
         out.contains("before        20.40 mm (RMS) on rows held out: your model, tool and device\n")
@@ -127,11 +118,7 @@ fn a_bad_day_is_told_in_short_lists_and_in_full_on_demand() {
     println!("{}{}", run.err, run.out);
     check(&run.out);
     assert!(run.out.lines().count() <= LINES, "{}", run.out);
-    assert!(
-        run.out.contains("\nmore          --verbose: ") && run.out.contains(" more to look at, "),
-        "{}",
-        run.out
-    );
+    assert!(run.out.contains("\nmore          --verbose: ") && run.out.contains(" more to look at, "), "{}", run.out);
     let full = folder.run("calibrate robot.urdf poor.csv --force --verbose").out;
     println!("{full}");
     assert!(!full.contains("more to look at") && full.contains("off by           position, mm"), "{full}");
@@ -149,11 +136,7 @@ fn warnings_stand_in_the_table_or_on_standard_error_and_not_in_both() {
     folder.write("measurements.csv", format!("{text}{copied}\n"));
     let unused = "warning: measurements.csv: ignored the columns `stage`\n";
     let run = folder.run("calibrate robot.urdf measurements.csv");
-    assert!(
-        paragraph(&run.out, "look at").contains("1 row repeats another to the last digit"),
-        "{}",
-        run.out
-    );
+    assert!(paragraph(&run.out, "look at").contains("1 row repeats another to the last digit"), "{}", run.out);
     assert_eq!(run.err, unused);
     let run = folder.run("calibrate robot.urdf measurements.csv --force --json");
     assert!(run.err.contains("warning: 1 row repeats another to the last digit"), "{}", run.err);

@@ -15,18 +15,14 @@ fn named_targets_are_predicted_by_name() {
     let file = calibration(&folder, "poecal-out");
     let robot = file.robot().unwrap();
     let data = measurements::read(&[folder.path("smr.csv")], &robot, &ReadOptions::default()).unwrap().data;
-    let out = folder
-        .run_to_success("predict poecal-out/calibration.json smr.csv --target smr1 --output-frame device");
+    let out = folder.run_to_success("predict poecal-out/calibration.json smr.csv --target smr1 --output-frame device");
     for (row, predicted) in numbers(&out, 1).iter().enumerate() {
         let measured = data.observations[row].measurement.pose();
         let distance = (0..3).map(|k| (predicted[k] - measured.translation[k]).powi(2)).sum::<f64>().sqrt();
         assert!(distance < 5e-4, "row {row}: {distance} m");
     }
     // A point has the tip's orientation.
-    let tip = numbers(
-        &folder.run_to_success("predict poecal-out/calibration.json smr.csv --output-frame device"),
-        1,
-    );
+    let tip = numbers(&folder.run_to_success("predict poecal-out/calibration.json smr.csv --output-frame device"), 1);
     assert_eq!(numbers(&out, 1)[0][3..], tip[0][3..]);
     let run = folder.run("predict poecal-out/calibration.json smr.csv --target smr2");
     assert_eq!(run.code, 2);
@@ -88,19 +84,12 @@ fn validation_judges_other_sessions() {
     assert!(found["calibrated"]["rotation_deg"]["rms"].as_f64().unwrap() < 0.04);
 
     // The same robot with the device elsewhere: positions in the base's own frame.
-    write_measurements(
-        &folder,
-        "moved.csv",
-        SessionKind::POSE,
-        "",
-        &Simulation { device_anywhere: false, ..more },
-    );
+    write_measurements(&folder, "moved.csv", SessionKind::POSE, "", &Simulation { device_anywhere: false, ..more });
     let run = folder.run("validate poecal-out/calibration.json moved.csv");
     assert_eq!(run.code, 1);
     println!("{}", run.err.trim_end());
     assert!(
-        run.err
-            .contains("from where the calibration has it: with its frame refitted the position error is 0."),
+        run.err.contains("from where the calibration has it: with its frame refitted the position error is 0."),
         "{}",
         run.err
     );

@@ -74,8 +74,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
         numbers(text, skip).iter().map(|row| [row[0], row[1], row[2]]).collect()
     };
     let rms = |found: &[[f64; 3]], wanted: &[[f64; 3]]| {
-        let squares =
-            found.iter().zip(wanted).map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>());
+        let squares = found.iter().zip(wanted).map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>());
         1e3 * (squares.sum::<f64>() / wanted.len() as f64).sqrt()
     };
     let csv = folder.read("measurements.csv");
@@ -87,8 +86,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
             [cells[0], cells[1], cells[2]]
         })
         .collect();
-    let predict =
-        |options: &str| measured(&folder.run_to_success(&format!("predict {options} measurements.csv")), 1);
+    let predict = |options: &str| measured(&folder.run_to_success(&format!("predict {options} measurements.csv")), 1);
     let (by_target, by_tip) = (
         predict("results/calibration.json --output-frame device"),
         predict("moved/calibration.json --output-frame device"),
@@ -109,8 +107,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
     assert!(rms(&target, &predict("moved/calibration.json --output-frame base")) < 0.05);
     // A file without names is judged by either.
     for name in ["results", "moved"] {
-        let judged =
-            folder.run_to_success(&format!("validate {name}/calibration.json measurements.csv --json"));
+        let judged = folder.run_to_success(&format!("validate {name}/calibration.json measurements.csv --json"));
         let found: serde_json::Value = serde_json::from_str(&judged).unwrap();
         let rms = found["calibrated"]["position_mm"]["rms"].as_f64().unwrap();
         let inside = found["promised"]["parts"]["position"]["inside"].clone();
@@ -122,8 +119,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
 #[test]
 fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
     let folder = session(SessionKind::POINT);
-    let told =
-        folder.run_to_success("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
+    let told = folder.run_to_success("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
     assert!(told.contains("tip           the point that was measured, by --move-tip"), "{told}");
     let file = calibration(&folder, "results");
     assert!(file.move_tip && file.targets.is_empty());
@@ -166,9 +162,5 @@ fn which_target_is_meant_is_said_where_it_is_open() {
     assert!(run.code == 2 && run.err.contains("write --target left"), "{}", run.err);
     folder.run_to_success("predict results/calibration.json left.csv --output-frame device --target left");
     let run = folder.run("validate results/calibration.json measurements.csv");
-    assert!(
-        run.code == 2 && run.err.contains("without a target's name, expected one of left, right"),
-        "{}",
-        run.err
-    );
+    assert!(run.code == 2 && run.err.contains("without a target's name, expected one of left, right"), "{}", run.err);
 }

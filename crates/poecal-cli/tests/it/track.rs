@@ -7,8 +7,7 @@ fn cell() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 3 --out cell");
-    folder
-        .run_to_success("calibrate cell/nominal.urdf cell/measurements.csv --corrections off --report none");
+    folder.run_to_success("calibrate cell/nominal.urdf cell/measurements.csv --corrections off --report none");
     folder
 }
 
@@ -42,7 +41,8 @@ fn a_visit_is_a_page_to_sign() {
         cells.join(",")
     });
     folder.write("visit.csv", shifted.collect::<Vec<_>>().join("\n") + "\n");
-    let words = "track then/calibration.json visit.csv --repeatability 0.05mm --report visit.html --record operator=<Mia>";
+    let words =
+        "track then/calibration.json visit.csv --repeatability 0.05mm --report visit.html --record operator=<Mia>";
     let run = folder.run(words);
     assert!(run.code == 1 && run.out.ends_with("report        visit.html\n"), "{}{}", run.out, run.err);
     let page = folder.read("visit.html");
@@ -74,8 +74,7 @@ fn a_visit_is_a_page_to_sign() {
 #[test]
 fn witnesses_are_planned_and_written() {
     let folder = cell();
-    let run =
-        folder.run("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out witness.csv");
+    let run = folder.run("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out witness.csv");
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
     assert!(run.out.contains("not visible"), "{}", run.out);
     // A comment, the names, and eight rows.
@@ -87,8 +86,7 @@ fn witnesses_are_planned_and_written() {
 fn visits_are_planned_by_plan_for_drift() {
     let folder = cell();
     folder.run_to_success("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out one.csv");
-    let run =
-        folder.run("plan poecal-out/calibration.json --purpose drift --repeatability 0.05mm --out two.csv");
+    let run = folder.run("plan poecal-out/calibration.json --purpose drift --repeatability 0.05mm --out two.csv");
     assert_eq!((run.code, folder.read("one.csv")), (0, folder.read("two.csv")), "{}", run.err);
     folder.run_to_success("plan robot.urdf --count 20 --out new.csv");
     let words = "plan poecal-out/calibration.json --purpose drift --device known --count 6 --candidates new.csv --out three.csv";
@@ -118,14 +116,9 @@ fn rows_that_repeat_nothing_are_judged_by_the_model() {
     assert!(run.err.contains("none of the rows repeats"), "{}{}", run.out, run.err);
     let model = folder.read("cell/nominal.urdf") + "<!-- another -->\n";
     folder.write("cell/nominal.urdf", model);
-    let run = folder
-        .run("track poecal-out/calibration.json cell/measurements.csv --repeatability 0.05mm --history none");
-    assert!(
-        run.code == 0 && run.err.contains("has other bytes than when it was calibrated"),
-        "{}{}",
-        run.out,
-        run.err
-    );
+    let run =
+        folder.run("track poecal-out/calibration.json cell/measurements.csv --repeatability 0.05mm --history none");
+    assert!(run.code == 0 && run.err.contains("has other bytes than when it was calibrated"), "{}{}", run.out, run.err);
 }
 
 #[test]
@@ -136,8 +129,8 @@ fn what_cannot_be_judged_is_refused() {
     let run = folder.run("track poecal-out/calibration.json few.csv");
     assert_eq!(run.code, 2, "{}", run.out);
     assert!(run.err.contains("more configurations"), "{}", run.err);
-    let run = folder
-        .run("track poecal-out/calibration.json cell/measurements.csv --recalibrate nothing --out new.json");
+    let run =
+        folder.run("track poecal-out/calibration.json cell/measurements.csv --recalibrate nothing --out new.json");
     assert!(run.code == 2 && run.err.contains("found joint `nothing`"), "{}", run.err);
     let run = folder.run("track poecal-out/calibration.json cell/measurements.csv --out new.json");
     assert!(run.code == 2 && run.err.contains("--plan or --recalibrate"), "{}", run.err);
@@ -176,8 +169,7 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
     folder.run_to_success("predict cell/actual.urdf cell/measurements.csv --out poses.csv --force");
     let (rows, poses) = (folder.read("cell/measurements.csv"), folder.read("poses.csv"));
     let mut rows = rows.lines().filter(|line| !line.starts_with('#'));
-    let mut joined =
-        rows.next().unwrap().split(',').take(6).collect::<Vec<_>>().join(",") + ",x[m],y[m],z[m]\n";
+    let mut joined = rows.next().unwrap().split(',').take(6).collect::<Vec<_>>().join(",") + ",x[m],y[m],z[m]\n";
     for (row, pose) in rows.zip(poses.lines().skip(1)) {
         let readings: Vec<&str> = row.split(',').take(6).collect();
         let pose: Vec<f64> = pose.split(',').map(|cell| cell.parse().unwrap()).collect();
@@ -196,9 +188,7 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
 fn another_tool_and_another_place_of_the_device_are_named() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.run_to_success(
-        "simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell",
-    );
+    folder.run_to_success("simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell");
     folder.run_to_success(
         "calibrate cell/nominal.urdf cell/measurements.csv --device-frame base --corrections off --report none",
     );

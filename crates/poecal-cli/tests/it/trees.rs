@@ -6,7 +6,8 @@ use crate::folder::Folder;
 use crate::session::calibration;
 
 const TORSO: &str = include_str!("../../../poecal-testing/data/torso.urdf");
-const TREE: &str = "--instrument eyes=head_camera --instrument chest=torso --target left=left_hand --target right=right_hand";
+const TREE: &str =
+    "--instrument eyes=head_camera --instrument chest=torso --target left=left_hand --target right=right_hand";
 
 /// A simulated session of two cameras that see two hands.
 fn seen_by_two() -> Folder {
@@ -28,9 +29,8 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
     let held_out = file.accuracy.held_out.as_ref().unwrap().calibrated.position_mm().rms;
     println!("held out: {held_out:.4} mm");
     assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
-    let table = folder.run_to_success(&format!(
-        "calibrate torso.urdf sim/measurements.csv {TREE} --out out --force --report none"
-    ));
+    let table = folder
+        .run_to_success(&format!("calibrate torso.urdf sim/measurements.csv {TREE} --out out --force --report none"));
     let said = table.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("no measurement sees joints torso1 and torso2 move"), "{table}");
 
@@ -39,16 +39,14 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
     assert_eq!(robot.instruments.len() + robot.mounted.len(), 4);
     let rows = folder.read("sim/held_out.csv").lines().skip(1).count();
     for target in ["left", "right"] {
-        let by_file = folder
-            .run_to_success(&format!("predict out/calibration.json sim/held_out.csv --target {target}"));
-        let by_urdf = folder.run_to_success(&format!(
-            "predict out/calibrated.urdf sim/held_out.csv --target {target}={target}_hand"
-        ));
+        let by_file =
+            folder.run_to_success(&format!("predict out/calibration.json sim/held_out.csv --target {target}"));
+        let by_urdf = folder
+            .run_to_success(&format!("predict out/calibrated.urdf sim/held_out.csv --target {target}={target}_hand"));
         // A URDF may need fewer joints for one hand; the readings are there nevertheless.
         assert_eq!(by_file.lines().count(), rows);
         for (a, b) in by_file.lines().zip(by_urdf.lines()).skip(1) {
-            let numbers =
-                |line: &str| -> Vec<f64> { line.split(',').map(|it| it.parse().unwrap()).collect() };
+            let numbers = |line: &str| -> Vec<f64> { line.split(',').map(|it| it.parse().unwrap()).collect() };
             let apart = numbers(a).iter().zip(numbers(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(apart < 1e-9, "{target}: {apart:e}");
         }
@@ -65,8 +63,7 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
         let rms = calibration(&folder, out).accuracy.held_out.unwrap().calibrated.position_mm().rms;
         assert!((rms - held_out).abs() < 1e-3 * held_out, "{out}: {rms} {held_out}");
     }
-    let device =
-        folder.run("predict out/calibration.json sim/held_out.csv --output-frame device --target left");
+    let device = folder.run("predict out/calibration.json sim/held_out.csv --output-frame device --target left");
     assert_eq!(device.code, 2);
     assert!(device.err.contains("found the instrument `eyes` on the robot"), "{}", device.err);
 }
@@ -80,9 +77,7 @@ fn settings_and_mappings_name_links_too() {
         "map.toml",
         "[mount.instruments]\neyes = 'head_camera'\nchest = 'torso'\n[mount.targets]\nleft = 'left_hand'\nright = 'right_hand'\n",
     );
-    folder.run_to_success(
-        "calibrate torso.urdf sim/measurements.csv --columns map.toml --out mapped --report none",
-    );
+    folder.run_to_success("calibrate torso.urdf sim/measurements.csv --columns map.toml --out mapped --report none");
     folder.write(
         "poecal.toml",
         "poecal_settings = 1\nmodel = 'torso.urdf'\nmeasurements = ['sim/measurements.csv']\n\
@@ -110,8 +105,7 @@ fn check_shows_which_joints_each_pair_sees() {
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(text.contains("eyes to left: head_yaw, left1, left2, left3, left4, left5, left6"), "{text}");
     assert!(text.contains("unseen torso1, torso2: no way passes them"), "{text}");
-    let json: Value =
-        serde_json::from_str(&folder.run_to_success(&format!("check torso.urdf {TREE} --json"))).unwrap();
+    let json: Value = serde_json::from_str(&folder.run_to_success(&format!("check torso.urdf {TREE} --json"))).unwrap();
     assert_eq!(json["sight"]["ways"].as_array().unwrap().len(), 4);
     assert_eq!(json["sight"]["unseen"], serde_json::json!(["torso1", "torso2"]));
     assert_eq!(json["model"]["joints"][8]["on"]["link_of"], "torso2");

@@ -58,16 +58,14 @@ fn verdict_says_how_far_a_calibration_may_be_used() {
     let file = json(&folder, "some/calibration.json");
     assert_eq!(file["verdict"]["level"], "inside_sampled_range");
     assert!(file["coverage"][1]["sampled_max"].as_f64().unwrap() < 1.0);
-    let enough =
-        folder.run("calibrate robot.urdf narrow.csv --out some --force --require inside_sampled_range");
+    let enough = folder.run("calibrate robot.urdf narrow.csv --out some --force --require inside_sampled_range");
     assert_eq!(enough.code, 0, "{enough:?}");
     for file in [json(&folder, "all/calibration.json"), file] {
         assert!(file["cross_validation"]["random"]["rms"]["position_mm"].as_f64().unwrap() > 0.0);
         assert_eq!(file["cross_validation"]["blocked"].as_array().unwrap().len(), 12);
         for correction in file["corrections"].as_array().unwrap() {
             assert!(
-                correction["sigma"]["shift_mm"].as_f64().unwrap()
-                    < correction["axis"]["shift_mm"].as_f64().unwrap()
+                correction["sigma"]["shift_mm"].as_f64().unwrap() < correction["axis"]["shift_mm"].as_f64().unwrap()
             );
             assert!(correction["left_nominal_rms_mm"].as_f64().unwrap() > 0.1);
         }
@@ -84,10 +82,7 @@ fn predictions_state_their_error() {
     );
     let plain = folder.run_to_success("predict some/calibration.json joints.csv --target measured");
     let run = folder.run("predict some/calibration.json joints.csv --with-uncertainty");
-    assert!(
-        run.code == 0 && run.err.contains("predicted the measured target `measured`; --target tip"),
-        "{run:?}"
-    );
+    assert!(run.code == 0 && run.err.contains("predicted the measured target `measured`; --target tip"), "{run:?}");
     let text = run.out;
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(
@@ -102,10 +97,7 @@ fn predictions_state_their_error() {
     assert!(number(1, 8) > 1e-6 && number(1, 8) < number(1, 10) && number(1, 10) < 1e-3);
     assert!(number(2, 8) > number(1, 8), "{text}");
     let run = folder.run("predict robot.urdf joints.csv --with-uncertainty");
-    assert!(
-        run.code == 2 && run.err.contains("expected a calibration.json for --with-uncertainty"),
-        "{run:?}"
-    );
+    assert!(run.code == 2 && run.err.contains("expected a calibration.json for --with-uncertainty"), "{run:?}");
 }
 
 #[test]

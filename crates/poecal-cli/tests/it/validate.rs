@@ -17,12 +17,9 @@ fn folder() -> Folder {
     let model = Model::read(folder.path("robot.urdf"), &Default::default()).unwrap();
     let simulation = Simulation { count: 1500, ..Simulation::default() };
     let made = simulation.run(&model.robot, SessionKind::POINT).unwrap();
-    let other =
-        Simulation { seed: 2, count: 1, ..simulation }.run(&model.robot, SessionKind::POINT).unwrap().actual;
-    let is_inside =
-        |row: usize| [1, 2].iter().all(|&joint| (made.data.readings(row)[joint] - 0.5).abs() < 0.8);
-    let is_outside =
-        |row: usize| [1, 2].iter().all(|&joint| (made.data.readings(row)[joint] - 0.5).abs() > 1.0);
+    let other = Simulation { seed: 2, count: 1, ..simulation }.run(&model.robot, SessionKind::POINT).unwrap().actual;
+    let is_inside = |row: usize| [1, 2].iter().all(|&joint| (made.data.readings(row)[joint] - 0.5).abs() < 0.8);
+    let is_outside = |row: usize| [1, 2].iter().all(|&joint| (made.data.readings(row)[joint] - 0.5).abs() > 1.0);
     let inside: Vec<usize> = (0..made.data.len()).filter(|&row| is_inside(row)).collect();
     let outside: Vec<usize> = (0..made.data.len()).filter(|&row| is_outside(row)).take(30).collect();
     assert!(inside.len() >= 90 && outside.len() == 30, "{} and {}", inside.len(), outside.len());
@@ -66,8 +63,7 @@ fn write_nominal<'a>(folder: &Folder, robot: &Robot, readings: impl Iterator<Ite
 #[test]
 fn a_gain_is_required_of_rows_that_judge() {
     let folder = folder();
-    let judge =
-        |words: &str| folder.run(&format!("validate poecal-out/calibration.json {words} --history none"));
+    let judge = |words: &str| folder.run(&format!("validate poecal-out/calibration.json {words} --history none"));
     let clear = judge("inside.csv --require-gain");
     assert_eq!((clear.code, clear.err.as_str()), (0, ""), "{}", clear.out);
     assert!(clear.out.contains("\ngain          the error of the nominal model is "), "{}", clear.out);
@@ -80,8 +76,7 @@ fn a_gain_is_required_of_rows_that_judge() {
     let lost = judge("nominal.csv --require-gain");
     assert!(lost.code == 1 && lost.out.contains("gain          a loss: "), "{}", lost.out);
     assert!(
-        lost.err
-            .contains("not what --require-gain asks for: on these rows the error of the nominal model is"),
+        lost.err.contains("not what --require-gain asks for: on these rows the error of the nominal model is"),
         "{}",
         lost.err
     );
@@ -109,9 +104,7 @@ fn a_promise_is_required_of_all_rows_or_of_those_inside() {
         let found: serde_json::Value = serde_json::from_str(&json.out).unwrap();
         assert!(found["calibrated"]["position_mm"]["mean"].as_f64().unwrap() > 1.0);
         assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() < 0.5);
-        assert!(
-            found["in_sampled_range"]["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() < 0.5
-        );
+        assert!(found["in_sampled_range"]["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() < 0.5);
     }
     // A range without rows cannot be judged.
     let run = judge("outside.csv --require inside_sampled_range");
@@ -128,11 +121,7 @@ fn what_lies_outside_the_sampled_range_is_not_blamed_on_the_robot() {
     let judge = |words: &str| folder.run(&format!("validate poecal-out/calibration.json {words}"));
     let run = judge("other_outside.csv");
     println!("{}{}", run.out, run.err);
-    assert!(
-        run.err.contains("no row lies inside the range that was sampled for the calibration"),
-        "{}",
-        run.err
-    );
+    assert!(run.err.contains("no row lies inside the range that was sampled for the calibration"), "{}", run.err);
     assert!(!run.err.contains("is not as it was calibrated"), "{}", run.err);
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("none of the rows lies inside it"), "{}", run.out);

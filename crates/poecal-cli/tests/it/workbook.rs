@@ -60,9 +60,7 @@ pub(crate) fn workbook(sheets: &[(&str, &Vec<Vec<String>>)]) -> Vec<u8> {
             for (column, text) in ('A'..).zip(cells) {
                 let own = text.strip_prefix('t').unwrap_or(text);
                 if text.is_empty() {
-                } else if let Some((formula, result)) =
-                    text.strip_prefix('=').and_then(|it| it.split_once('|'))
-                {
+                } else if let Some((formula, result)) = text.strip_prefix('=').and_then(|it| it.split_once('|')) {
                     write!(data, "<c r=\"{column}{row}\"><f>{formula}</f><v>{result}</v></c>").unwrap();
                 } else if let Some(number) = text.strip_prefix('d').filter(|it| it.parse::<f64>().is_ok()) {
                     write!(data, "<c r=\"{column}{row}\" s=\"1\"><v>{number}</v></c>").unwrap();
@@ -79,11 +77,8 @@ pub(crate) fn workbook(sheets: &[(&str, &Vec<Vec<String>>)]) -> Vec<u8> {
             format!("{HEAD}<worksheet xmlns=\"{MAIN}\"><sheetData>{data}</sheetData></worksheet>"),
         ));
         write!(list, "<sheet name=\"{name}\" sheetId=\"{at}\" r:id=\"rId{at}\"/>").unwrap();
-        write!(
-            links,
-            "<Relationship Id=\"rId{at}\" Type=\"{OFFICE}/worksheet\" Target=\"worksheets/sheet{at}.xml\"/>"
-        )
-        .unwrap();
+        write!(links, "<Relationship Id=\"rId{at}\" Type=\"{OFFICE}/worksheet\" Target=\"worksheets/sheet{at}.xml\"/>")
+            .unwrap();
         write!(
             types,
             "<Override PartName=\"/xl/worksheets/sheet{at}.xml\" ContentType=\"application/vnd.openxmlformats-officedocument.spreadsheetml.worksheet+xml\"/>"

@@ -16,8 +16,7 @@ fn write_changed_sheet(folder: &Folder, column: usize, change: impl Fn(usize, &s
         cells.map(|(k, cell)| if k == column { change(at, cell) } else { cell.to_owned() }).collect()
     };
     let header = COLUMNS.map(str::to_owned).to_vec();
-    let sheet: Vec<Vec<String>> =
-        std::iter::once(header).chain(text.lines().skip(1).enumerate().map(row)).collect();
+    let sheet: Vec<Vec<String>> = std::iter::once(header).chain(text.lines().skip(1).enumerate().map(row)).collect();
     folder.write("book.xlsx", workbook(&[("data", &sheet)]));
 }
 
@@ -44,11 +43,7 @@ fn formulas_without_results_are_no_zeros() {
     // Formulas with their results are numbers, and zeros among them too.
     write_changed_sheet(&folder, 5, |_, cell| format!("={cell}*1|{cell}"));
     folder.run_to_success("calibrate robot.urdf book.xlsx --out results");
-    write_changed_sheet(
-        &folder,
-        5,
-        |at, cell| if at == 0 { "=0*1|0".to_owned() } else { format!("={cell}*1|{cell}") },
-    );
+    write_changed_sheet(&folder, 5, |at, cell| if at == 0 { "=0*1|0".to_owned() } else { format!("={cell}*1|{cell}") });
     folder.run_to_success("check robot.urdf book.xlsx");
 }
 

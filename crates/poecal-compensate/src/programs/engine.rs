@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::Range;
 
-use super::super::{
-    ChangeOptions, CompensatedConfiguration, Compensation, CompensationSummary, CorrectionOutcome,
-};
+use super::super::{ChangeOptions, CompensatedConfiguration, Compensation, CompensationSummary, CorrectionOutcome};
 use super::pose_compensation::PoseCompensation;
 use super::program_text::{number, replace_ranges, with_sign_as};
 use super::reasons as reason;
@@ -70,8 +68,7 @@ impl<'e> Engine<'e> {
             if let Entry::Vacant(place) = self.held.entry(bits(&values)) {
                 let held: Vec<(usize, f64)> = self.external.iter().copied().zip(values).collect();
                 let (nominal, actual) = self.robots;
-                let readings =
-                    Compensation::with_held_joints(nominal, actual, self.factors, &held, self.options)?;
+                let readings = Compensation::with_held_joints(nominal, actual, self.factors, &held, self.options)?;
                 place.insert(PoseCompensation::from_compensation(readings));
             }
         }
@@ -145,12 +142,8 @@ impl<'e> Engine<'e> {
             let made = match fate {
                 TargetOutcome::Open => Err(reason::NO_MOTION.into()),
                 TargetOutcome::Listed(reason, line) if line == target.line => Err(reason),
-                TargetOutcome::Listed(reason, line) => {
-                    Err(format!("{reason} (motion on line {line})").into())
-                }
-                TargetOutcome::Placed(placed) => {
-                    self.write(target, &placed, &mut summary).map(|it| (it, placed.q))
-                }
+                TargetOutcome::Listed(reason, line) => Err(format!("{reason} (motion on line {line})").into()),
+                TargetOutcome::Placed(placed) => self.write(target, &placed, &mut summary).map(|it| (it, placed.q)),
             };
             match made {
                 Ok((made, q)) => {
@@ -171,14 +164,11 @@ impl<'e> Engine<'e> {
 
     /// Outcome of each target by the motions to it.
     fn fates(&self, parsed: &ParsedProgram) -> Vec<TargetOutcome> {
-        let mut fates: Vec<TargetOutcome> =
-            parsed.targets.iter().map(|it| self.outcome_without_motions(it)).collect();
+        let mut fates: Vec<TargetOutcome> = parsed.targets.iter().map(|it| self.outcome_without_motions(it)).collect();
         let mut reached: Vec<Option<Vec<f64>>> = Vec::with_capacity(parsed.motions.len());
         let start = self.given.start.clone().map(|it| self.readings(it));
         for (number, motion) in parsed.motions.iter().enumerate() {
-            let (Some(target), Some(fate)) =
-                (parsed.targets.get(motion.target), fates.get_mut(motion.target))
-            else {
+            let (Some(target), Some(fate)) = (parsed.targets.get(motion.target), fates.get_mut(motion.target)) else {
                 reached.push(None);
                 continue;
             };
@@ -256,9 +246,7 @@ impl<'e> Engine<'e> {
         // If external axes move on the path too, it is not a path of the arm alone.
         let is_straight = motion.is_straight && before.is_none_or(|it| self.external_of(it) == external);
         match (&motion.stated, before) {
-            (StatedConfiguration::Near(near), _) => {
-                self.solve_nearest(target, &self.readings(near.clone()), external)
-            }
+            (StatedConfiguration::Near(near), _) => self.solve_nearest(target, &self.readings(near.clone()), external),
             (StatedConfiguration::Nothing, None) => Err(reason::NOTHING_STATED.into()),
             (StatedConfiguration::Nothing, Some(before)) if !is_straight => {
                 self.solve_nearest(target, before, external)
@@ -330,13 +318,8 @@ impl<'e> Engine<'e> {
                 numbers
             }
         };
-        let texts: Vec<String> = target
-            .numbers
-            .iter()
-            .zip(&numbers)
-            .enumerate()
-            .map(|(at, it)| number(at, it, target.meant))
-            .collect();
+        let texts: Vec<String> =
+            target.numbers.iter().zip(&numbers).enumerate().map(|(at, it)| number(at, it, target.meant)).collect();
         let written = self.remaining_error(target, placed, &readings, &texts, left);
         let is_exact = found.outcome == CorrectionOutcome::Reached;
         let most = if is_exact { (ROUNDING, ROUNDING) } else { (left.0 + ROUNDING, left.1 + ROUNDING) };

@@ -93,8 +93,7 @@ pub fn compensate_program(
     let mut made = engine.correct(text, parsed, options.each);
     if options.check {
         let again = parse(options.language, &made.text, &options.given, &axes)?;
-        made.summary.checked =
-            Some(summary::check_written(&engine, (nominal, actual), factors, &again, &made.meant));
+        made.summary.checked = Some(summary::check_written(&engine, (nominal, actual), factors, &again, &made.meant));
     }
     let corrected = made.meant.len();
     let summary = ProgramSummary { language: options.language, corrected, changes: made.summary };
@@ -113,11 +112,9 @@ pub fn compensate_file(
 ) -> Result<(Vec<u8>, ProgramSummary)> {
     let path = path.as_ref();
     let text = read_program(path)?;
-    compensate_program(&text, robots, factors, options).map_err(|error| {
-        match error.place().and_then(|it| it.line) {
-            Some(line) => error.at_line(path, line),
-            None => error.in_file(path),
-        }
+    compensate_program(&text, robots, factors, options).map_err(|error| match error.place().and_then(|it| it.line) {
+        Some(line) => error.at_line(path, line),
+        None => error.in_file(path),
     })
 }
 

@@ -60,8 +60,7 @@ impl PoseCompensation {
     pub fn compensate_at(&mut self, q: &[f64]) -> (Pose, CompensatedConfiguration<'_>) {
         let (nominal, at) = (self.compensation.nominal_arm().clone(), self.compensation.readings().to_vec());
         let found = self.compensation.joints(q);
-        let commanded: Vec<f64> =
-            at.iter().map(|&it| found.readings.get(it).copied().unwrap_or(0.0)).collect();
+        let commanded: Vec<f64> = at.iter().map(|&it| found.readings.get(it).copied().unwrap_or(0.0)).collect();
         (nominal.forward_kinematics(&commanded), found)
     }
 
@@ -94,8 +93,7 @@ impl PoseCompensation {
             for (q, &(low, high)) in branch.iter().zip(limits) {
                 let (low, high) = (low.max(-2.0 * TAU), high.min(2.0 * TAU));
                 let turned = (-2..=2).map(|turns| q + f64::from(turns) * TAU);
-                let within: Vec<f64> =
-                    turned.filter(|it| (low - SLACK..=high + SLACK).contains(it)).collect();
+                let within: Vec<f64> = turned.filter(|it| (low - SLACK..=high + SLACK).contains(it)).collect();
                 let longer = |it: &Vec<f64>| -> Vec<Vec<f64>> {
                     within.iter().map(|&value| it.iter().copied().chain([value]).collect()).collect()
                 };
@@ -141,10 +139,8 @@ impl PoseCompensation {
             let (before, after) = (f64::from(step - 1) / steps, f64::from(step) / steps);
             advance(arm, &between, (before, after), &mut q, HALVINGS)?;
         }
-        let is_within =
-            q.iter().zip(arm.limits()).all(|(q, (low, high))| (low - SLACK..=high + SLACK).contains(q));
-        (is_within && arm.forward_kinematics(&q).distance_and_angle(target).0 < 1e-8)
-            .then(|| self.of_robot(&q, from))
+        let is_within = q.iter().zip(arm.limits()).all(|(q, (low, high))| (low - SLACK..=high + SLACK).contains(q));
+        (is_within && arm.forward_kinematics(&q).distance_and_angle(target).0 < 1e-8).then(|| self.of_robot(&q, from))
     }
 
     /// True if the nominal arm is so near a singularity that a pose hardly determines the configuration.

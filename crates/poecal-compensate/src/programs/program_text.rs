@@ -35,8 +35,7 @@ pub(crate) fn number(at: usize, (number, value): (&Number, &f64), meant: PoseMea
 /// A number with the sign style of the old one: a plus and the spaces after the sign are kept.
 pub(crate) fn with_sign_as(old: &[u8], new: String) -> String {
     let Some(sign @ (b'+' | b'-')) = old.first() else { return new };
-    let gap: String =
-        old[1..].iter().take_while(|it| it.is_ascii_whitespace()).map(|&it| char::from(it)).collect();
+    let gap: String = old[1..].iter().take_while(|it| it.is_ascii_whitespace()).map(|&it| char::from(it)).collect();
     match (new.strip_prefix('-'), sign) {
         (Some(digits), _) => format!("-{gap}{digits}"),
         (None, b'+') => format!("+{gap}{new}"),

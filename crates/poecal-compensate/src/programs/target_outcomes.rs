@@ -31,11 +31,7 @@ pub(crate) enum TargetOutcome {
 }
 
 /// Outcome of a target with another motion, on this line.
-pub(crate) fn join_outcomes(
-    fate: TargetOutcome,
-    placed: TargetResult<PlacedTarget>,
-    line: usize,
-) -> TargetOutcome {
+pub(crate) fn join_outcomes(fate: TargetOutcome, placed: TargetResult<PlacedTarget>, line: usize) -> TargetOutcome {
     match (fate, placed) {
         (TargetOutcome::Open, Ok(placed)) => TargetOutcome::Placed(Box::new(placed)),
         (TargetOutcome::Open | TargetOutcome::Placed(_), Err(reason)) => TargetOutcome::Listed(reason, line),

@@ -6,9 +6,7 @@ use nalgebra::Vector3;
 use poecal_arm::lie::rotation;
 use poecal_arm::{AllBranches, Arm};
 use poecal_compensate::Kinematics;
-use poecal_model::robot::{
-    Body, CompliantDirections, FactorReading, Gravity, JointTerm, Mass, Robot, Term, TermKind,
-};
+use poecal_model::robot::{Body, CompliantDirections, FactorReading, Gravity, JointTerm, Mass, Robot, Term, TermKind};
 use poecal_model::simulate;
 
 use poecal_model::simulate::random;
@@ -27,13 +25,11 @@ fn draw_number(numbers: &mut ChaCha8Rng) -> f64 {
 fn with_compliance_everywhere(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
     let all: Vec<usize> = (0..robot.joints.len()).collect();
     let (mut robot, _) = robot.with_compliance(&all, CompliantDirections::All);
-    robot.factors =
-        vec![FactorReading { name: "temperature".into(), reference: 20.0 }, FactorReading::new("payload")];
+    robot.factors = vec![FactorReading { name: "temperature".into(), reference: 20.0 }, FactorReading::new("payload")];
     robot.gravity = Some(Gravity::of_unit_weights(&robot, Vector3::new(0.1, 0.2, -1.0)));
     let bodies = [(1, 3.0), (robot.joints.len() - 1, 1.5)];
-    robot.masses = bodies
-        .map(|(at, kg)| Mass { body: Body::Link(at), place: random::normal_vector(numbers), kg })
-        .into();
+    robot.masses =
+        bodies.map(|(at, kg)| Mass { body: Body::Link(at), place: random::normal_vector(numbers), kg }).into();
     let weights = robot.gravity.as_ref().unwrap().weights.len();
     for joint in 0..robot.joints.len() {
         let mut terms = vec![Term::OFFSET, Term::RATIO, TermKind::Masses.with_number(0)];
@@ -105,9 +101,7 @@ fn branches_of_a_bent_arm_reach_the_pose() {
         let is_own = |it: &[f64; 6]| it.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-9);
         own += usize::from(found.as_slice().iter().any(is_own));
     }
-    println!(
-        "{own} of {count} configurations found among {branches} branches; largest remainder {worst:.1e}"
-    );
+    println!("{own} of {count} configurations found among {branches} branches; largest remainder {worst:.1e}");
     assert!(worst < 1e-10 && own == count && branches > 2 * count);
 }
 
@@ -124,11 +118,8 @@ fn many_configurations_are_what_each_is_alone() {
     {
         for size in [0.0, 0.02, 0.4] {
             let factors = [26.0, 1.5];
-            let robot = if size == 0.0 {
-                robot.clone()
-            } else {
-                with_compliance_everywhere(&robot, size, &mut numbers)
-            };
+            let robot =
+                if size == 0.0 { robot.clone() } else { with_compliance_everywhere(&robot, size, &mut numbers) };
             let (arm, own) = robot.arm(&factors).unwrap();
             let kinematics = Kinematics::new(&robot, &factors).unwrap();
             let width = robot.joint_reading_names().len();
@@ -215,11 +206,7 @@ fn sag_is_what_the_terms_of_weights_do() {
         let mut readings = draw_rows(100, width, &mut numbers);
         // Joints of other branches are at zero for an arm.
         let (_, own) = robot.arm(&factors).unwrap();
-        readings
-            .iter_mut()
-            .enumerate()
-            .filter(|(at, _)| !own.contains(&(at % width)))
-            .for_each(|(_, it)| *it = 0.0);
+        readings.iter_mut().enumerate().filter(|(at, _)| !own.contains(&(at % width))).for_each(|(_, it)| *it = 0.0);
         let sag = Kinematics::new(&robot, &factors).unwrap().sag(&readings);
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
         for (row, sag) in readings.chunks_exact(width).zip(&sag) {
@@ -234,8 +221,6 @@ fn sag_is_what_the_terms_of_weights_do() {
         }
         println!("{name}: sag of up to {largest:.1e}, off by {worst:.1e}");
         assert!(worst < 1e-13 && largest > 1e-4, "{name}: {worst}, {largest}");
-        assert!(
-            Kinematics::new(&unloaded, &factors).unwrap().sag(&readings).concat().iter().all(|it| *it == 0.0)
-        );
+        assert!(Kinematics::new(&unloaded, &factors).unwrap().sag(&readings).concat().iter().all(|it| *it == 0.0));
     }
 }

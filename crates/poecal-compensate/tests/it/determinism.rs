@@ -24,9 +24,7 @@ fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
                     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                     let mut rows = Vec::new();
                     ResidualRows::Of(&made.data, &calibration).write_to(&mut rows).unwrap();
-                    assert!(
-                        rows == Residuals::from_calibration(&made.data, &calibration).text().into_bytes()
-                    );
+                    assert!(rows == Residuals::from_calibration(&made.data, &calibration).text().into_bytes());
                     (format!("{calibration:?}"), rows)
                 })
             };
@@ -47,12 +45,10 @@ fn kinematics_do_not_depend_on_threads() {
     let found = |threads: usize| {
         with_threads(threads, || {
             let kinematics = Kinematics::new(&actual, &[]).unwrap();
-            let (tips, jacobians) =
-                (kinematics.forward_kinematics(&readings), kinematics.jacobians(&readings));
+            let (tips, jacobians) = (kinematics.forward_kinematics(&readings), kinematics.jacobians(&readings));
             let inverse = Inverse::new(&actual, &[]).unwrap();
-            let near = inverse.of_many(&tips[..300], |it, row, tip| {
-                it.solve_nearest(tip, &readings[6 * row..][..6], false)
-            });
+            let near =
+                inverse.of_many(&tips[..300], |it, row, tip| it.solve_nearest(tip, &readings[6 * row..][..6], false));
             let compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
             (tips, jacobians, near, compensation.of_many(&readings, false).0)
         })
@@ -64,7 +60,6 @@ fn kinematics_do_not_depend_on_threads() {
     }
     // Many corrections at once equal those one after the other.
     let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
-    let each: Vec<f64> =
-        readings.chunks_exact(6).flat_map(|row| compensation.joints(row).readings.to_vec()).collect();
+    let each: Vec<f64> = readings.chunks_exact(6).flat_map(|row| compensation.joints(row).readings.to_vec()).collect();
     assert!(each == one.3);
 }

@@ -20,8 +20,7 @@ const BESIDE: &str = r#"<robot name="arm"><link name="base_link"/><link name="ba
 
 fn parse_urdf(text: &str, base: &str, tip: Option<&str>) -> UrdfDocument {
     let tip_link = tip.map(str::to_owned);
-    let selection =
-        ChainSelection { base_link: Some(base.to_owned()), tip_link, ..ChainSelection::default() };
+    let selection = ChainSelection { base_link: Some(base.to_owned()), tip_link, ..ChainSelection::default() };
     UrdfDocument::parse(text, "arm.urdf", &selection).unwrap()
 }
 
@@ -41,8 +40,7 @@ fn a_base_that_fixed_joints_join_to_the_chain_is_its_base() {
         assert!(metres < 1e-15 && radians < 1e-15);
         // A calibration in this base is written into the joints below the other one, and read again.
         let shift = Pose::from_xyz_rpy([1e-3, -2e-3, 5e-4], [1e-3, 2e-3, -1e-3]);
-        let screws: Vec<Screw> =
-            base.robot().joints.iter().map(|joint| joint.screw.transform(&shift)).collect();
+        let screws: Vec<Screw> = base.robot().joints.iter().map(|joint| joint.screw.transform(&shift)).collect();
         let calibrated = base.robot().with_screws(&screws);
         let patched = base.patch(&calibrated).unwrap();
         let again = UrdfDocument::parse(&patched.text, "arm.urdf", &patched.selection).unwrap();
@@ -59,7 +57,12 @@ fn a_base_that_fixed_joints_join_to_the_chain_is_its_base() {
         ..ChainSelection::default()
     };
     let error = UrdfDocument::parse(&moved, "arm.urdf", &selection).unwrap_err().to_string();
-    assert!(error.contains("expected a base link above the tip (`fore`, `upper`, `base_link`), or one that fixed joints join to these"), "{error}");
+    assert!(
+        error.contains(
+            "expected a base link above the tip (`fore`, `upper`, `base_link`), or one that fixed joints join to these"
+        ),
+        "{error}"
+    );
 }
 
 #[test]
@@ -67,10 +70,7 @@ fn an_instrument_on_a_base_beside_the_chain_is_where_it_is() {
     let selection = ChainSelection {
         base_link: Some("base".to_owned()),
         tip_link: Some("tool0".to_owned()),
-        instruments: vec![
-            ("camera".to_owned(), "base".to_owned()),
-            ("scanner".to_owned(), "base_link".to_owned()),
-        ],
+        instruments: vec![("camera".to_owned(), "base".to_owned()), ("scanner".to_owned(), "base_link".to_owned())],
         ..ChainSelection::default()
     };
     let error = UrdfDocument::parse(BESIDE, "arm.urdf", &selection);
@@ -96,16 +96,14 @@ fn joints_are_named_in_cells() {
                 1,b,a,lift,0.5,1.5,0.25,100,200,300\n2,b,a,lift,0.6,1.4,0.2,110,200,300\n";
     let file = parse(text, "states.csv", &lifting_robot(), &ReadOptions::default()).unwrap();
     assert_eq!(file.data.readings(0), [1.5, 0.25, 0.5]);
-    let brackets = text
-        .replace("field.name", "/joint_states/name[")
-        .replace("field.position", "/joint_states/position[");
+    let brackets =
+        text.replace("field.name", "/joint_states/name[").replace("field.position", "/joint_states/position[");
     let brackets = brackets.replacen("0,", "0],", 2).replacen("1,", "1],", 2).replacen("2,", "2],", 2);
     let file = parse(&brackets, "states.csv", &lifting_robot(), &ReadOptions::default());
     assert_eq!(file.unwrap().data.readings(1), [1.4, 0.2, 0.6]);
     // Another publisher's order is not read as this one.
     let mixed = text.replace("2,b,a,lift", "2,a,b,lift");
-    let error =
-        parse(&mixed, "states.csv", &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string();
+    let error = parse(&mixed, "states.csv", &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string();
     assert!(
         error.starts_with(
             "states.csv:3:3: found the joint `a` in column `field.name0`, expected `b` as in the first row"
@@ -123,10 +121,7 @@ fn two_tables_side_by_side_are_one_if_it_is_said_of_few_rows() {
         let error = read(&files, &lifting_robot(), &ReadOptions::default()).unwrap_err();
         let error = folder.without_path(&error.to_string());
         println!("{error}");
-        assert!(
-            error.starts_with("points.csv: found one configuration, with which nothing shows"),
-            "{error}"
-        );
+        assert!(error.starts_with("points.csv: found one configuration, with which nothing shows"), "{error}");
         // The advice is followed.
         let rows = ReadOptions { join: Some(Join::Rows), ..ReadOptions::default() };
         let both = read(&files, &lifting_robot(), &rows).unwrap();
@@ -162,9 +157,8 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
         nominal.forward_kinematics(&q)
     };
     let (one, other) = (at(1.054_423, 3.0), at(0.8, 5.0));
-    let millimetres = |pose: &Pose| {
-        pose.translation.iter().map(|it| format!("{:.9}", 1e3 * it)).collect::<Vec<_>>().join(",")
-    };
+    let millimetres =
+        |pose: &Pose| pose.translation.iter().map(|it| format!("{:.9}", 1e3 * it)).collect::<Vec<_>>().join(",");
     let quaternion = |pose: &Pose| {
         let [x, y, z, w] = pose.quaternion_xyzw();
         format!("{w:.12},{x:.12},{y:.12},{z:.12}")
@@ -192,16 +186,13 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
     let fanuc = format!(
         "/PROG P\n/MN\n1:J P[1] 100% FINE ;\n/POS\nP[1]{{\n GP1:\n UF : 0, UT : 1, {joints}, E1= 1054.423 mm\n}};\n/END\n"
     );
-    for (language, text, count) in
-        [(Language::Rapid, rapid, 3), (Language::Krl, krl, 2), (Language::Fanuc, fanuc, 1)]
-    {
+    for (language, text, count) in [(Language::Rapid, rapid, 3), (Language::Krl, krl, 2), (Language::Fanuc, fanuc, 1)] {
         let mut options = ProgramOptions { check: true, ..ProgramOptions::new(language) };
         if language == Language::Krl {
             options.given.add_tool("0,0,0,0,0,0", language).unwrap();
             options.given.add_frame("0,0,0,0,0,0", language).unwrap();
         }
-        let (made, summary) =
-            compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
+        let (made, summary) = compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
         let checked = summary.changes.checked.unwrap();
         println!("{language:?}: {} corrected, {:?}", summary.corrected, checked);
         assert!(summary.is_whole() && summary.corrected == count, "{:#?}", summary.changes.listed);
@@ -215,9 +206,5 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
     let lacking = "MODULE M\nPROC main()\nMoveAbsJ [[10,20,-15,40,50,60],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
     let options = ProgramOptions::new(Language::Rapid);
     let (_, summary) = compensate_program(lacking.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
-    assert!(
-        summary.changes.listed[0]
-            .reason
-            .contains("it states no value of an external axis that the model has")
-    );
+    assert!(summary.changes.listed[0].reason.contains("it states no value of an external axis that the model has"));
 }

@@ -29,16 +29,8 @@ const RETURNS_RAD: f64 = 1e-5;
 /// P1 to P5 of a cube of 0.3 m in the diagonal plane, with the orientation of a middle configuration.
 fn commands() -> Vec<Pose> {
     let middle = elbow().forward_kinematics(&[0.3, 0.2, -0.3, 0.2, 0.6, 0.1]);
-    let own = |x: f64, y: f64, z: f64| {
-        Pose::new(middle.rotation, middle.translation + 0.12 * Vector3::new(x, y, z))
-    };
-    vec![
-        own(0.0, 0.0, 0.0),
-        own(1.0, 1.0, 1.0),
-        own(-1.0, 1.0, 1.0),
-        own(-1.0, -1.0, -1.0),
-        own(1.0, -1.0, -1.0),
-    ]
+    let own = |x: f64, y: f64, z: f64| Pose::new(middle.rotation, middle.translation + 0.12 * Vector3::new(x, y, z));
+    vec![own(0.0, 0.0, 0.0), own(1.0, 1.0, 1.0), own(-1.0, 1.0, 1.0), own(-1.0, -1.0, -1.0), own(1.0, -1.0, -1.0)]
 }
 
 /// The largest AP before, predicted after, and measured after.
@@ -115,19 +107,13 @@ fn accuracy_after_correction_is_predicted() {
         better += usize::from(after < 0.5 * before);
     }
     let share = |count: usize| count as f64 / trials.count as f64;
-    println!(
-        "within 20 % in {:.3} of {}, less than half the error in {:.3}",
-        share(near),
-        trials.count,
-        share(better)
-    );
+    println!("within 20 % in {:.3} of {}, less than half the error in {:.3}", share(near), trials.count, share(better));
     assert!(share(near) >= 0.9 - trials.more_of_a_share(0.1) && share(better) > 0.9);
 }
 
 /// Largest distance of reached positions from commanded ones, in a frame that is fitted as that of a test.
 fn farthest(robot: &Robot, configurations: &[Vec<f64>], commanded: &[Vector3<f64>]) -> f64 {
-    let reached: Vec<Vector3<f64>> =
-        configurations.iter().map(|it| robot.forward_kinematics(it).translation).collect();
+    let reached: Vec<Vector3<f64>> = configurations.iter().map(|it| robot.forward_kinematics(it).translation).collect();
     let frame = rigid_motion(&reached, commanded);
     reached.iter().zip(commanded).map(|(a, b)| (frame.act(a) - b).norm()).fold(0.0, f64::max)
 }
@@ -166,8 +152,7 @@ fn corrected_programs_of_a_planned_test_reach_its_poses() {
         let (text, summary) = compensate_program(text.as_bytes(), robots, &[], &options).unwrap();
         assert!(summary.is_whole() && summary.corrected == rows.len(), "{name}: {summary:?}");
         let parsed =
-            parse(language, &text, &StatedFrames::default(), &ControllerAxes::from_robot(&made.nominal))
-                .unwrap();
+            parse(language, &text, &StatedFrames::default(), &ControllerAxes::from_robot(&made.nominal)).unwrap();
         let reached: Vec<Vec<f64>> = parsed.targets.iter().map(ProgramTarget::scaled_numbers).collect();
         let after_m = farthest(&made.actual, &reached, &commanded);
         println!("{name}: before {before_m:.2e} m, after {after_m:.2e} m");

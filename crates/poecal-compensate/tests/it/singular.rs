@@ -214,10 +214,7 @@ impl Counted {
             }
             assert!(outcome == CorrectionOutcome::Turned || left_rad < 1e-9);
             // Arms like these usually have errors of 0.1 deg, the worst of them twice that in the median.
-            assert!(
-                left_rad <= turned_rad.max(1f64.to_radians()),
-                "much farther off than without correction"
-            );
+            assert!(left_rad <= turned_rad.max(1f64.to_radians()), "much farther off than without correction");
             // The arm itself confirms it.
             let apart = compensation.actual_arm().forward_kinematics(&readings);
             let target = compensation.nominal_arm().forward_kinematics(q);
@@ -225,8 +222,7 @@ impl Counted {
             self.worst.0 = self.worst.0.max(left_m).max(metres);
             self.worst.1 = self.worst.1.max(left_rad);
             self.worst.2 = self.worst.2.max(compensation.share_of_most(q, &readings));
-            let largest =
-                |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let change = largest(&readings, q);
             if let Some((meant, commanded, changed)) = &before {
                 let beyond = largest(&readings, commanded) - largest(q, meant);
@@ -301,8 +297,7 @@ fn no_row_is_sent_to_another_branch() {
 #[test]
 fn a_straight_wrist_stays_straight() {
     let nominal = arm(&ARMS[0].1);
-    let simulation =
-        Simulation { count: 1, error_rotation_rad: 1e-3, error_position_m: 3e-4, ..Simulation::default() };
+    let simulation = Simulation { count: 1, error_rotation_rad: 1e-3, error_position_m: 3e-4, ..Simulation::default() };
     let actual = simulation.run(&nominal, SessionKind::POSE).unwrap().actual;
     let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
     let found = compensation.joints(&[0.0; 6]);

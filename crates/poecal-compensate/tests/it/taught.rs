@@ -11,11 +11,7 @@ use poecal_results::calibration_file::{CalibrationFile, Inputs};
 const REFLECTOR: [f64; 3] = [0.04, -0.02, 0.1];
 
 /// A calibration of an elbow with axis errors of this size (rad, m), with a model that ends at the flange.
-fn calibrate_elbow(
-    off: (f64, f64),
-    kind: SessionKind,
-    frame: DeviceFrameKnowledge,
-) -> (CalibrationFile, Robot) {
+fn calibrate_elbow(off: (f64, f64), kind: SessionKind, frame: DeviceFrameKnowledge) -> (CalibrationFile, Robot) {
     let simulation = Simulation {
         count: 80,
         error_rotation_rad: off.0,

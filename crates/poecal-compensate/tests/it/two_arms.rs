@@ -19,9 +19,8 @@ const TORSO: usize = 2 + 4;
 
 /// The torso of the tests with the mounts on its links; `base` is its base link, or `torso` for two arms on one base.
 fn robot(base: &str, instruments: &[(&str, &str)], targets: &[(&str, &str)]) -> Robot {
-    let pairs = |pairs: &[(&str, &str)]| {
-        pairs.iter().map(|(name, link)| ((*name).to_owned(), (*link).to_owned())).collect()
-    };
+    let pairs =
+        |pairs: &[(&str, &str)]| pairs.iter().map(|(name, link)| ((*name).to_owned(), (*link).to_owned())).collect();
     let selection = ChainSelection {
         base_link: Some(base.to_owned()),
         instruments: pairs(instruments),
@@ -103,9 +102,8 @@ fn a_device_beside_the_torso_sees_both_hands() {
 fn the_left_hand_sees_the_right() {
     let places = [(SessionKind::POSE, 6), (SessionKind::POINT, 3), (SessionKind::DISTANCE, 0)];
     for (kind, more) in places {
-        let made = exact_simulation(if kind == SessionKind::DISTANCE { 300 } else { 160 })
-            .run(&hand_to_hand(), kind)
-            .unwrap();
+        let made =
+            exact_simulation(if kind == SessionKind::DISTANCE { 300 } else { 160 }).run(&hand_to_hand(), kind).unwrap();
         assert!(made.data.stations == [Some("eye".to_owned())], "{:?}", made.data.stations);
         check(&format!("hand to hand, {}s", kind.word()), &made, ARMS + more, TORSO + ARMS + more);
     }
@@ -143,8 +141,7 @@ fn planes_that_both_hands_touch() {
 fn a_torso_that_moves_ties_both_arms_together() {
     for (base, own, lacking) in [("torso_lift", 4, [2, 1, 1]), ("base_link", TORSO, [2, 1, 0])] {
         for (planes, lacks) in (1..).zip(lacking) {
-            let made =
-                of_places(exact_simulation(450).run(&both_hands(base), SessionKind::PLANE).unwrap(), planes);
+            let made = of_places(exact_simulation(450).run(&both_hands(base), SessionKind::PLANE).unwrap(), planes);
             let unknowns = own + ARMS + 6 + 3 * planes - 6;
             check(&format!("{base}, arms on {planes} planes"), &made, unknowns - lacks, unknowns);
         }
@@ -175,11 +172,8 @@ fn with_noise_held_out_rows_are_as_good_as_the_noise() {
 /// The rows of the left hand, with the readings of its chain alone.
 fn of_left(chain: &Robot, data: &Dataset) -> Dataset {
     let mut own = Dataset::new(chain.reading_names());
-    let at: Vec<usize> = own
-        .reading_names()
-        .iter()
-        .map(|name| data.reading_names().iter().position(|it| it == name).unwrap())
-        .collect();
+    let at: Vec<usize> =
+        own.reading_names().iter().map(|name| data.reading_names().iter().position(|it| it == name).unwrap()).collect();
     for (row, observation) in data.observations.iter().enumerate() {
         if data.targets[observation.target].as_deref() == Some("left") {
             let readings: Vec<f64> = at.iter().map(|&at| data.readings(row)[at]).collect();
@@ -196,8 +190,7 @@ fn corrected_m(calibration: &Calibration, unseen: &Dataset, target: Option<&str>
     let session = Session::new(&found.model.robot, unseen, &packed, true);
     let is_own = |row: &u32| unseen.targets[unseen.observations[*row as usize].target].as_deref() == target;
     let rows: Vec<u32> = unseen.all_rows().into_iter().filter(is_own).collect();
-    let squares: f64 =
-        session.errors(&rows, &found.estimate).iter().map(|it| it.position_m().norm_squared()).sum();
+    let squares: f64 = session.errors(&rows, &found.estimate).iter().map(|it| it.position_m().norm_squared()).sum();
     (squares / rows.len() as f64).sqrt()
 }
 

@@ -70,8 +70,7 @@ impl DecodedPicture {
             return of_jpeg(bytes, most);
         }
         let is_it = |(at, magic, _): &&(usize, &[u8], &str)| {
-            bytes.get(*at..).is_some_and(|rest| rest.starts_with(magic))
-                && (*at != 8 || bytes.starts_with(b"RIFF"))
+            bytes.get(*at..).is_some_and(|rest| rest.starts_with(magic)) && (*at != 8 || bytes.starts_with(b"RIFF"))
         };
         Err(DecodeFailure::Broken(OTHERS.iter().find(is_it).map_or_else(
             || "The image format could not be determined".to_owned(),
@@ -89,8 +88,7 @@ impl DecodedPicture {
         // Offsets of the samples in a pixel: gray serves as all three colours.
         let places = if channels < 3 { [0, 0, 0] } else { [0, 1, 2] };
         let levels = if self.is_deep {
-            let sample =
-                |pixel: &[u8], at: usize| f32::from(u16::from_be_bytes([pixel[2 * at], pixel[2 * at + 1]]));
+            let sample = |pixel: &[u8], at: usize| f32::from(u16::from_be_bytes([pixel[2 * at], pixel[2 * at + 1]]));
             let pixels = self.samples.chunks_exact(2 * channels);
             pixels.map(|pixel| weigh(places.map(|at| sample(pixel, at))) * (255.0 / 65535.0)).collect()
         } else {
@@ -165,8 +163,7 @@ fn no_png(error: DecodingError) -> String {
 }
 
 fn of_jpeg(bytes: &[u8], most: u64) -> std::result::Result<DecodedPicture, DecodeFailure> {
-    let options =
-        DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
+    let options = DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
     let mut head = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     head.decode_headers().map_err(no_jpeg)?;
     let orientation = head.exif().and_then(|exif| exif::orientation(exif));

@@ -24,9 +24,8 @@ pub(crate) fn orientation(exif: &[u8]) -> Option<u8> {
     // Only the first list of entries concerns the picture; others concern its thumbnail.
     let list = exif.get(usize::try_from(long(exif, 4)?).ok()?..)?;
     let count = usize::from(short(list, 0)?);
-    let is_it = |entry: &&[u8]| {
-        (short(entry, 0), short(entry, 2), long(entry, 4)) == (Some(ORIENTATION), Some(SHORT), Some(1))
-    };
+    let is_it =
+        |entry: &&[u8]| (short(entry, 0), short(entry, 2), long(entry, 4)) == (Some(ORIENTATION), Some(SHORT), Some(1));
     let entry = list.get(2..)?.chunks_exact(ENTRY).take(count).find(is_it)?;
     u8::try_from(short(entry, 8)?).ok().filter(|it| (1..=8).contains(it))
 }

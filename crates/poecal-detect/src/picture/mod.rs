@@ -57,8 +57,7 @@ impl PictureOrientation {
             return Ok(gray);
         }
         let (width, height) = (gray.width(), gray.height());
-        let (columns, rows) =
-            if self.degrees.is_multiple_of(180) { (width, height) } else { (height, width) };
+        let (columns, rows) = if self.degrees.is_multiple_of(180) { (width, height) } else { (height, width) };
         let before = |column: usize, row: usize| {
             let (x, y) = match self.degrees {
                 90 => (row, height - 1 - column),
@@ -88,8 +87,7 @@ impl GrayPicture {
     /// # Errors
     /// If the file cannot be read, or is no such picture; the message contains its path.
     pub fn open(path: &Path) -> Result<Self> {
-        let unread =
-            |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
+        let unread = |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
         let bytes = std::fs::read(path).map_err(|error| unread(&error))?;
         GrayPicture::decode(&bytes, path)
     }
@@ -106,16 +104,9 @@ impl GrayPicture {
     ///
     /// # Errors
     /// Those of [`GrayPicture::decode`], with the size of a picture of more pixels.
-    pub fn decode_up_to(
-        bytes: &[u8],
-        path: &Path,
-        most_pixels: u64,
-    ) -> std::result::Result<Self, PictureError> {
+    pub fn decode_up_to(bytes: &[u8], path: &Path, most_pixels: u64) -> std::result::Result<Self, PictureError> {
         let no_picture = |reason: &dyn fmt::Display| PictureError {
-            error: Error::new(format!(
-                "{}: found no picture, expected PNG or JPEG ({reason})",
-                path.display()
-            )),
+            error: Error::new(format!("{}: found no picture, expected PNG or JPEG ({reason})", path.display())),
             too_large: None,
         };
         let decoded = DecodedPicture::from_bytes(bytes, most_pixels).map_err(|found| match found {

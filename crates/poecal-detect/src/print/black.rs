@@ -46,8 +46,7 @@ fn squares(page: &PageLayout<'_>) -> Vec<Rectangle> {
     let Some((dictionary, _)) = &layout.markers else { return black };
     for id in 0..layout.marker_count() {
         // Cell 0 is border: `is_black` is true for cells outside.
-        let is_black =
-            |column: usize, row: usize| dictionary.is_black(id, column.wrapping_sub(1), row.wrapping_sub(1));
+        let is_black = |column: usize, row: usize| dictionary.is_black(id, column.wrapping_sub(1), row.wrapping_sub(1));
         black.extend(marker(page, id, dictionary.bits() + 2, is_black));
     }
     black
@@ -72,12 +71,7 @@ fn tag_rectangles(page: &PageLayout<'_>, tags: &TagGrid) -> Vec<Rectangle> {
 }
 
 /// Black areas of a marker: runs of cells, row by row.
-fn marker(
-    page: &PageLayout<'_>,
-    id: usize,
-    cells: usize,
-    is_black: impl Fn(usize, usize) -> bool,
-) -> Vec<Rectangle> {
+fn marker(page: &PageLayout<'_>, id: usize, cells: usize, is_black: impl Fn(usize, usize) -> bool) -> Vec<Rectangle> {
     let Some([first, _, last, _]) = page.layout.marker_corners(id) else { return Vec::new() };
     let place = |column: usize, row: usize| {
         [(column, 0), (row, 1)].map(|(cell, axis)| {

@@ -19,8 +19,7 @@ pub fn describe_board(spec: &BoardSpec) -> String {
             )
         }
         BoardSpec::Circles(Circles { columns, rows, pitch_m, asymmetric }) => {
-            let (pitch, kind) =
-                (mm(*pitch_m), if *asymmetric { "Asymmetric circle grid" } else { "Circle grid" });
+            let (pitch, kind) = (mm(*pitch_m), if *asymmetric { "Asymmetric circle grid" } else { "Circle grid" });
             format!("{kind}, {columns} columns by {rows} rows of dots, {pitch} mm from row to row")
         }
         BoardSpec::Tags(Tags { dictionary, size_m }) => {
@@ -52,10 +51,7 @@ pub(super) fn other_programs_names(spec: &BoardSpec) -> String {
             format!("OpenCV: findCirclesGrid(picture, ({columns}, {rows}), flags=CALIB_CB_{kind}_GRID)")
         }
         BoardSpec::Tags(Tags { dictionary, .. }) => {
-            format!(
-                "OpenCV: ArucoDetector(getPredefinedDictionary({})).detectMarkers(picture)",
-                dictionary.name()
-            )
+            format!("OpenCV: ArucoDetector(getPredefinedDictionary({})).detectMarkers(picture)", dictionary.name())
         }
         BoardSpec::AprilGrid(AprilGrid { columns, rows, size_m, spacing, .. }) => {
             let size = decimal(*size_m, 6);

@@ -47,16 +47,7 @@ impl PrintSheet {
         rectangles.extend(lines);
         words.extend(texts(spec, size_mm, &board, square_mm));
         words.extend(labels(&layout, origin_mm));
-        Ok(PrintSheet {
-            size_mm,
-            title: spec.to_string(),
-            board,
-            rectangles,
-            discs,
-            words,
-            layout,
-            origin_mm,
-        })
+        Ok(PrintSheet { size_mm, title: spec.to_string(), board, rectangles, discs, words, layout, origin_mm })
     }
 
     /// The page as SVG, in millimetres.
@@ -112,17 +103,13 @@ fn too_large(spec: &BoardSpec, page: &PaperSize) -> Error {
     let [from, to] = extent(&layout(spec, [0.0; 2]));
     let squares = [0, 1].map(|axis| to[axis] - from[axis]);
     let sides = squares.map(|it| it * spec.square_m() * 1e3);
-    let room = |size: [f64; 2]| {
-        ((size[0] - 2.0 * MARGIN_MM) / squares[0]).min((size[1] - 2.0 * MARGIN_MM) / squares[1])
-    };
+    let room =
+        |size: [f64; 2]| ((size[0] - 2.0 * MARGIN_MM) / squares[0]).min((size[1] - 2.0 * MARGIN_MM) / squares[1]);
     let most = page.ways().into_iter().map(room).fold(0.0, f64::max);
     // A tenth of a millimetre, or exactly the space that a page of a stated size leaves.
     let most = ((most * 10.0 + 1e-6).floor() / 10.0).max(0.0);
-    let smaller = if most >= LEAST_MM {
-        format!(", or {} of at most {} mm", unit(spec), mm(most))
-    } else {
-        String::new()
-    };
+    let smaller =
+        if most >= LEAST_MM { format!(", or {} of at most {} mm", unit(spec), mm(most)) } else { String::new() };
     let [width, height] = sides.map(mm);
     let [wide, high] = sides.map(|it| mm(it + 2.0 * MARGIN_MM));
     Error::new(format!(

@@ -45,11 +45,7 @@ fn length(side_mm: f64, from_mm: f64, type_mm: f64) -> f64 {
 }
 
 /// A ruler below the board, and one on its left: both begin where its squares do.
-pub(super) fn rulers(
-    size_mm: [f64; 2],
-    board: &Rectangle,
-    square_mm: f64,
-) -> (Vec<Rectangle>, Vec<SheetText>) {
+pub(super) fn rulers(size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> (Vec<Rectangle>, Vec<SheetText>) {
     let (mut lines, mut words) = (Vec::new(), Vec::new());
     let [left, upper] = board.from_mm;
     for axis in [0, 1] {
@@ -85,12 +81,7 @@ pub(super) fn rulers(
 }
 
 /// Description of the board, above it: as many of the sentences as fit, in the largest type that fits.
-pub(super) fn texts(
-    spec: &BoardSpec,
-    size_mm: [f64; 2],
-    board: &Rectangle,
-    square_mm: f64,
-) -> Vec<SheetText> {
+pub(super) fn texts(spec: &BoardSpec, size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> Vec<SheetText> {
     let sentences = [
         describe_board(spec),
         format!("poecal: --markers {spec}"),
@@ -100,9 +91,7 @@ pub(super) fn texts(
     let margin = board.from_mm[1];
     let wide = size_mm[0] - 2.0 * EDGE_MM;
     let room = (margin - EDGE_MM).min(4.5).max(0.7 * (margin - EDGE_MM));
-    let Some((lines, size)) =
-        (1..=sentences.len()).rev().find_map(|count| set(&sentences[..count], wide, room))
-    else {
+    let Some((lines, size)) = (1..=sentences.len()).rev().find_map(|count| set(&sentences[..count], wide, room)) else {
         return Vec::new();
     };
     let longest = lines.iter().map(|line| width(line) * size).fold(0.0, f64::max);

@@ -17,8 +17,7 @@ pub struct PaperSize {
 }
 
 /// Pages with names, upright, millimetres.
-const NAMED: [(&str, [f64; 2]); 3] =
-    [("a4", [210.0, 297.0]), ("a3", [297.0, 420.0]), ("letter", [215.9, 279.4])];
+const NAMED: [(&str, [f64; 2]); 3] = [("a4", [210.0, 297.0]), ("a3", [297.0, 420.0]), ("letter", [215.9, 279.4])];
 /// Sides of a page, millimetres: the largest in a PDF is 5,080.
 const SIDES_MM: std::ops::RangeInclusive<f64> = 50.0..=5000.0;
 

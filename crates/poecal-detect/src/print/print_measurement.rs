@@ -92,8 +92,7 @@ mod tests {
 
     #[test]
     fn a_print_that_shrank_has_smaller_squares_and_markers() {
-        let found =
-            correct_measured("charuco:5x7:36mm:18mm:DICT_6X6_250:legacy", "179.4mm, 25.116cm").unwrap();
+        let found = correct_measured("charuco:5x7:36mm:18mm:DICT_6X6_250:legacy", "179.4mm, 25.116cm").unwrap();
         assert_eq!(found.spec.to_string(), "charuco:5x7:35.88mm:17.94mm:DICT_6X6_250:legacy");
         assert!(found.agrees());
         let found = correct_measured("chessboard:10x7:27mm", "270mm,189mm").unwrap();

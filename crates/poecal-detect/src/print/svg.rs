@@ -24,8 +24,7 @@ pub(super) fn write_svg(sheet: &PrintSheet) -> String {
     }
     for it in &sheet.discs {
         let [x, y] = it.middle_mm;
-        let (left, y, radius, across) =
-            (mm(x - it.radius_mm), mm(y), mm(it.radius_mm), mm(2.0 * it.radius_mm));
+        let (left, y, radius, across) = (mm(x - it.radius_mm), mm(y), mm(it.radius_mm), mm(2.0 * it.radius_mm));
         let half = |way: &str| format!("a{radius} {radius} 0 0 1 {way}{across} 0");
         let _ = writeln!(out, "M{left} {y}{}{}Z", half(""), half("-"));
     }

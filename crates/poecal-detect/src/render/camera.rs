@@ -28,10 +28,7 @@ impl RenderCamera {
             return None;
         }
         let seen = plane * (1.0 + square * (k1 + k2 * square));
-        Some(Vector2::new(
-            seen.x * self.focal_px[0] + self.centre_px[0],
-            seen.y * self.focal_px[1] + self.centre_px[1],
-        ))
+        Some(Vector2::new(seen.x * self.focal_px[0] + self.centre_px[0], seen.y * self.focal_px[1] + self.centre_px[1]))
     }
 
     /// The ray of a pixel, with z = 1.

@@ -8,11 +8,8 @@ use crate::gray::Gray;
 /// A background of a workshop: a gradient of light with bars, discs, stripes, labels and tiles in all sizes, without blur and noise.
 #[must_use]
 pub fn clutter([width, height]: [usize; 2], random: &mut RandomGenerator) -> Gray {
-    let (left, right, lower) = (
-        random.draw_uniform(20.0, 200.0),
-        random.draw_uniform(20.0, 200.0),
-        random.draw_uniform(-40.0, 40.0),
-    );
+    let (left, right, lower) =
+        (random.draw_uniform(20.0, 200.0), random.draw_uniform(20.0, 200.0), random.draw_uniform(-40.0, 40.0));
     let mut picture = Gray::from_level(width, height, 0.0);
     for (at, level) in picture.levels_mut().iter_mut().enumerate() {
         let (x, y) = ((at % width) as f64 / width as f64, (at / width) as f64 / height as f64);
@@ -58,10 +55,7 @@ impl ClutterShape {
             _ => Fill::Dots(random.draw_uniform(8.0, 40.0)),
         };
         ClutterShape {
-            middle: Vector2::new(
-                random.draw_uniform(0.0, width as f64),
-                random.draw_uniform(0.0, height as f64),
-            ),
+            middle: Vector2::new(random.draw_uniform(0.0, width as f64), random.draw_uniform(0.0, height as f64)),
             half: [long, long * random.draw_uniform(0.2, 1.0)],
             turn: random.draw_uniform(0.0, 3.2),
             levels: [random.draw_uniform(5.0, 250.0), random.draw_uniform(5.0, 250.0)],

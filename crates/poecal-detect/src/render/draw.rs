@@ -105,10 +105,7 @@ impl RandomScenes {
             let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), random.draw_uniform(-3.2, 3.2));
             let tilt = Rotation3::new(axis * tilt_deg.to_radians());
             let [width, height] = self.camera.size.map(|it| it as f64);
-            let place = Vector2::new(
-                random.draw_uniform(0.25, 0.75) * width,
-                random.draw_uniform(0.25, 0.75) * height,
-            );
+            let place = Vector2::new(random.draw_uniform(0.25, 0.75) * width, random.draw_uniform(0.25, 0.75) * height);
             let ray = self.camera.ray(place);
             // The tilt of the board is relative to its own line of sight.
             let sight = Rotation3::rotation_between(&Vector3::z(), &ray).unwrap_or_default();
@@ -126,12 +123,7 @@ impl RandomScenes {
     }
 
     /// Number of the outer corners of the board, and of its inner ones, outside the picture.
-    fn count_outside(
-        &self,
-        layout: &BoardLayout,
-        rotation: &Matrix3<f64>,
-        translation: &Vector3<f64>,
-    ) -> usize {
+    fn count_outside(&self, layout: &BoardLayout, rotation: &Matrix3<f64>, translation: &Vector3<f64>) -> usize {
         let [columns, rows] = layout.squares;
         let all = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
         all.filter(|(column, row)| {

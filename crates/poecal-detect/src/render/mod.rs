@@ -93,10 +93,8 @@ impl RenderScene {
                 let point = self.rotation * Vector3::new(at.x, at.y, 0.0) + self.translation_m;
                 let place_px = self.camera.project(&point)?;
                 // A dot counts as visible only as a whole.
-                let beside = [[1.0, 0.0], [0.0, 1.0]]
-                    .map(|it| self.rotation * Vector3::new(it[0], it[1], 0.0) * dot_m);
-                let reach_px =
-                    beside.map(|it| self.camera.project(&(point + it)).map(|it| (it - place_px).norm()));
+                let beside = [[1.0, 0.0], [0.0, 1.0]].map(|it| self.rotation * Vector3::new(it[0], it[1], 0.0) * dot_m);
+                let reach_px = beside.map(|it| self.camera.project(&(point + it)).map(|it| (it - place_px).norm()));
                 let seen_px = SEEN_PX + reach_px.into_iter().flatten().fold(0.0, f64::max);
                 let covered = self.patch.is_some_and(|it| it.covers(place_px, seen_px));
                 let (x, y) = (place_px.x, place_px.y);
@@ -206,9 +204,8 @@ impl RenderScene {
                 self.level(at_corners[all[0]], behind)
             };
             let from_middle = |place: usize, size: usize| 2.0 * place as f64 / size as f64 - 1.0;
-            let light = 1.0
-                + self.gradient[0] * from_middle(column, width)
-                + self.gradient[1] * from_middle(row, height);
+            let light =
+                1.0 + self.gradient[0] * from_middle(column, width) + self.gradient[1] * from_middle(row, height);
             *level = (mean * light) as f32;
         }
         picture

@@ -29,8 +29,7 @@ impl RandomGenerator {
 
     /// A nearly normal number of variance one: the sum of eight numbers, which is fast and ends at 4.9.
     pub fn rough_normal(&mut self) -> f64 {
-        let parts =
-            |bits: u64| (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);
+        let parts = |bits: u64| (bits & 0xffff) + (bits >> 16 & 0xffff) + (bits >> 32 & 0xffff) + (bits >> 48);
         let sum = parts(self.generator.next_u64()) + parts(self.generator.next_u64());
         (sum as f64 / 65535.0 - 4.0) * (12.0_f64 / 8.0).sqrt()
     }

@@ -77,7 +77,6 @@ fn middle(quad: &[Vector2<f64>; 4]) -> Vector2<f64> {
 fn cells(dictionary: &Dictionary, marker: &DetectedMarker) -> TagCells {
     let side = dictionary.bits() + 2;
     // `is_black` is true for cells outside.
-    let cell =
-        |at: usize| dictionary.is_black(marker.id, (at % side).wrapping_sub(1), (at / side).wrapping_sub(1));
+    let cell = |at: usize| dictionary.is_black(marker.id, (at % side).wrapping_sub(1), (at / side).wrapping_sub(1));
     TagCells { side, dark: (0..side * side).map(cell).collect() }
 }

@@ -30,9 +30,8 @@ impl TagCells {
         let first = |at: f32| at.clamp(0.0, side) as i32;
         let end = |at: f32| first(at) + i32::from(at.min(side) > first(at) as f32);
         let (columns, rows) = (first(low[0])..end(high[0]), first(low[1])..end(high[1]));
-        let is_dark = |row: i32, column: i32| {
-            self.dark.get(row as usize * self.side + column as usize).is_some_and(|it| *it)
-        };
+        let is_dark =
+            |row: i32, column: i32| self.dark.get(row as usize * self.side + column as usize).is_some_and(|it| *it);
         // Most rectangles are within a cell.
         let inside = low[0].min(low[1]) >= 0.0 && high[0].max(high[1]) <= side;
         if inside && columns.len() == 1 && rows.len() == 1 {

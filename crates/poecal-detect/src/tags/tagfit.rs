@@ -207,9 +207,8 @@ impl PixelAdder {
         }
         self.count += counted;
         self.kept += keeps[..count].iter().sum::<f32>() as usize;
-        let is_plain = (0..LANES).fold(true, |all, k| {
-            all & (left[k] == s[k]) & (right[k] == s[k]) & (up[k] == s[k]) & (down[k] == s[k])
-        });
+        let is_plain = (0..LANES)
+            .fold(true, |all, k| all & (left[k] == s[k]) & (right[k] == s[k]) & (up[k] == s[k]) & (down[k] == s[k]));
         if is_plain {
             self.plain.add(&mut shades, &mut residuals, count);
             return;
@@ -223,8 +222,7 @@ impl PixelAdder {
             let by_x = -0.5 * (right[k] - left[k]) * contrast;
             let by_y = -0.5 * (down[k] - up[k]) * contrast;
             let (u, v) = (own_x[k], own_y[k]);
-            let weights =
-                [(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v, bend_at([u, v], self.sides)];
+            let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v, bend_at([u, v], self.sides)];
             for corner in 0..5 {
                 rows[2 * corner][k] = by_x * weights[corner];
                 rows[2 * corner + 1][k] = by_y * weights[corner];

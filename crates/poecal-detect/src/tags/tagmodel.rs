@@ -93,11 +93,7 @@ pub(crate) struct BentTagMap {
 impl BentTagMap {
     pub(crate) fn new(model: &TagModel, back: [[f32; 3]; 3]) -> Self {
         let sides = model.squared_sides();
-        BentTagMap {
-            back,
-            bend: [model.bend.x as f32, model.bend.y as f32],
-            sides: sides.map(|it| it as f32),
-        }
+        BentTagMap { back, bend: [model.bend.x as f32, model.bend.y as f32], sides: sides.map(|it| it as f32) }
     }
 
     /// Position on the tag without the bend, and 1 over the depth factor.

@@ -17,9 +17,7 @@ fn middles_of_dots_at_all_tilts() {
         let tally = Tally::from_drawn_pictures("circles:9x6:30mm", &draw(low, high), trials.count);
         // OpenCV finds 71 % of such pictures, with 0.035 px below 30° and 0.114 px above 45°, since the middle of an ellipse is biased.
         assert!(
-            tally.part() >= 0.97 - trials.tolerance_factor(MISSED)
-                && tally.rms_px() <= 0.05
-                && tally.farthest < 1.0
+            tally.part() >= 0.97 - trials.tolerance_factor(MISSED) && tally.rms_px() <= 0.05 && tally.farthest < 1.0
         );
     }
 }
@@ -29,11 +27,7 @@ fn dots_of_an_asymmetric_grid() {
     let draw = RandomScenes { square_px: [28.0, 78.0], ..RandomScenes::default() };
     let trials = trials(16).at_least(4);
     let tally = Tally::from_drawn_pictures("circles:4x11:20mm:asymmetric", &draw, trials.count);
-    assert!(
-        tally.part() >= 0.96 - trials.tolerance_factor(MISSED)
-            && tally.rms_px() <= 0.05
-            && tally.farthest < 1.0
-    );
+    assert!(tally.part() >= 0.96 - trials.tolerance_factor(MISSED) && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     // 68 % of a normal error, within the scatter of 1000 numbers, and the smallest sigma, which is a floor.
     assert!((0.60..0.78).contains(&tally.share_within()));
 }

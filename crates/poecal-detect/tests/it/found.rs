@@ -46,8 +46,7 @@ impl Tally {
             let place = move |id: usize| drawn.truth[if turn { last - id } else { id }];
             found.corners.iter().map(move |it| (place(it.id), Vector2::new(it.u_px, it.v_px), it.sigma_px))
         };
-        let sum =
-            |turn: bool| off(turn).map(|(truth, place, _)| (place - truth.place_px).norm()).sum::<f64>();
+        let sum = |turn: bool| off(turn).map(|(truth, place, _)| (place - truth.place_px).norm()).sum::<f64>();
         let turn = found.turnable && sum(true) < sum(false);
         for (truth, place, sigma_px) in off(turn) {
             let error = place - truth.place_px;
@@ -87,11 +86,8 @@ fn corners_of_a_charuco_board() {
 
 #[test]
 fn corners_of_a_chessboard() {
-    let tally = Tally::from_drawn_pictures(
-        "chessboard:10x7:28mm",
-        &RandomScenes::default(),
-        trials(40).at_least(10).count,
-    );
+    let tally =
+        Tally::from_drawn_pictures("chessboard:10x7:28mm", &RandomScenes::default(), trials(40).at_least(10).count);
     // As above: OpenCV has 72 % and 0.12 px.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     assert!((0.60..0.78).contains(&tally.share_within()));
@@ -99,11 +95,8 @@ fn corners_of_a_chessboard() {
 
 #[test]
 fn corners_of_a_board_that_looks_the_same_from_both_ends() {
-    let tally = Tally::from_drawn_pictures(
-        "chessboard:8x6:30mm",
-        &RandomScenes::default(),
-        trials(20).at_least(5).count,
-    );
+    let tally =
+        Tally::from_drawn_pictures("chessboard:8x6:30mm", &RandomScenes::default(), trials(20).at_least(5).count);
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
 }
 
@@ -156,8 +149,7 @@ fn corners_of_half_a_board() {
             .for_each(|(_, it)| *it = 90.0);
         let half = poecal_detect::Gray::new(width, drawn.picture.height(), levels).unwrap();
         let found = detector.detect(&half).unwrap();
-        let left: Vec<usize> =
-            drawn.truth.iter().filter(|it| it.place_px.x > middle + 12.0).map(|it| it.id).collect();
+        let left: Vec<usize> = drawn.truth.iter().filter(|it| it.place_px.x > middle + 12.0).map(|it| it.id).collect();
         visible += left.len();
         seen += left.iter().filter(|id| found.corners.iter().any(|it| it.id == **id)).count();
         for corner in &found.corners {

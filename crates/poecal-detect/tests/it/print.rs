@@ -65,9 +65,8 @@ fn picture(sheet: &PrintSheet, px_per_mm: f64) -> Gray {
         for row in (y - radius) as usize..=(y + radius) as usize {
             for column in (x - radius) as usize..=(x + radius) as usize {
                 let part = |at: usize| (at as f64 + 0.5) / 8.0;
-                let is_in = |at: usize| {
-                    (column as f64 + part(at % 8) - x).hypot(row as f64 + part(at / 8) - y) < radius
-                };
+                let is_in =
+                    |at: usize| (column as f64 + part(at % 8) - x).hypot(row as f64 + part(at / 8) - y) < radius;
                 levels[row * width + column] -= 205.0 / 64.0 * (0..64).filter(|at| is_in(*at)).count() as f32;
             }
         }
@@ -84,8 +83,7 @@ fn the_detector_finds_every_corner_of_what_is_drawn() {
         let sheet = sheet(text, "a4");
         let found = Detector::new(&spec).detect(&picture(&sheet, PX_PER_MM)).unwrap();
         // Loose tags are as many as fit on the page.
-        let markers =
-            if matches!(spec, BoardSpec::Tags(_)) { sheet.points() / 4 } else { layout.marker_count() };
+        let markers = if matches!(spec, BoardSpec::Tags(_)) { sheet.points() / 4 } else { layout.marker_count() };
         assert_eq!((found.corners.len(), found.markers), (sheet.points(), markers), "{text}");
         let mut farthest = 0.0_f64;
         for corner in &found.corners {
@@ -113,9 +111,9 @@ fn the_legacy_pattern_of_even_rows_is_another_board() {
 
 /// True if a rectangle has no point in common with another one.
 fn are_apart(one: &Rectangle, other: &Rectangle) -> bool {
-    [0, 1].into_iter().any(|axis| {
-        one.to_mm[axis] <= other.from_mm[axis] + 1e-9 || other.to_mm[axis] <= one.from_mm[axis] + 1e-9
-    })
+    [0, 1]
+        .into_iter()
+        .any(|axis| one.to_mm[axis] <= other.from_mm[axis] + 1e-9 || other.to_mm[axis] <= one.from_mm[axis] + 1e-9)
 }
 
 #[test]
@@ -145,14 +143,10 @@ fn rulers_and_words_stand_between_board_and_edge() {
         let (names, bars): (Vec<Rectangle>, Vec<Rectangle>) = bars.into_iter().partition(inside);
         // Names of loose tags are between them.
         assert!(names.is_empty() || spec.starts_with("tags"), "{spec} on {page}: words on the board");
-        assert!(
-            names.iter().all(|name| sheet.rectangles.iter().all(|it| are_apart(name, it))),
-            "{spec} on {page}"
-        );
+        assert!(names.iter().all(|name| sheet.rectangles.iter().all(|it| are_apart(name, it))), "{spec} on {page}");
         for it in lines.chain(bars.iter().copied()) {
             assert!(are_apart(&it, &board), "{spec} on {page}: {it:?} is on the board");
-            let within =
-                (0..2).all(|axis| it.from_mm[axis] >= 3.5 && it.to_mm[axis] <= sheet.size_mm[axis] - 4.5);
+            let within = (0..2).all(|axis| it.from_mm[axis] >= 3.5 && it.to_mm[axis] <= sheet.size_mm[axis] - 4.5);
             assert!(within, "{spec} on {page}: {it:?} is at the edge");
         }
         let bars: Vec<Rectangle> = bars.into_iter().chain(names).collect();
@@ -171,10 +165,8 @@ fn rulers_and_words_stand_between_board_and_edge() {
 #[test]
 fn a_large_page_has_a_square_of_white_around_the_board() {
     let sheet = sheet("chessboard:10x7:27mm", "a3");
-    let board = Rectangle {
-        from_mm: sheet.board.from_mm.map(|it| it - 26.9),
-        to_mm: sheet.board.to_mm.map(|it| it + 26.9),
-    };
+    let board =
+        Rectangle { from_mm: sheet.board.from_mm.map(|it| it - 26.9), to_mm: sheet.board.to_mm.map(|it| it + 26.9) };
     assert!(sheet.words.iter().all(|it| are_apart(&bar(it), &board)));
 }
 
@@ -215,9 +207,8 @@ fn the_svg_has_the_rectangles_and_words_in_millimetres() {
     let root = svg.root_element();
     assert_eq!(root.attribute("width"), Some("215.9mm"));
     assert_eq!(root.attribute("viewBox"), Some("0 0 215.9 279.4"));
-    let named = |name: &'static str| {
-        svg.descendants().filter(move |it| it.has_tag_name(("http://www.w3.org/2000/svg", name)))
-    };
+    let named =
+        |name: &'static str| svg.descendants().filter(move |it| it.has_tag_name(("http://www.w3.org/2000/svg", name)));
     let path = named("path").next().unwrap().attribute("d").unwrap();
     let parts: Vec<&str> = path.split_terminator('Z').filter(|it| !it.trim().is_empty()).collect();
     assert_eq!(parts.len(), sheet.rectangles.len());
@@ -257,8 +248,7 @@ fn dots_are_discs_in_both_files() {
     assert!((first.middle_mm[0] - sheet.board.from_mm[0] - 24.0).abs() < 1e-9 && first.radius_mm == 6.0);
     assert_eq!(sheet.place_mm(0), first.middle_mm);
     let svg = sheet.svg();
-    let arcs: Vec<&str> =
-        svg.lines().filter(|line| line.contains("a6 6 0 0 1 12 0a6 6 0 0 1 -12 0Z")).collect();
+    let arcs: Vec<&str> = svg.lines().filter(|line| line.contains("a6 6 0 0 1 12 0a6 6 0 0 1 -12 0Z")).collect();
     assert!(arcs.len() == 54 && arcs[0].starts_with(&format!("M{} ", first.middle_mm[0] - 6.0)), "{arcs:?}");
     let pdf = sheet.pdf();
     let curves: Vec<Vec<f64>> = pdf
@@ -269,17 +259,15 @@ fn dots_are_discs_in_both_files() {
     assert_eq!(curves.len(), 4 * 54);
     // Halfway along the first quarter, which begins to the right of the middle.
     let [x, y] = first.middle_mm;
-    let half = [(x + 6.0, 0), (y, 1)].map(|(begin, axis)| {
-        (begin + 3.0 * curves[0][axis] + 3.0 * curves[0][2 + axis] + curves[0][4 + axis]) / 8.0
-    });
+    let half = [(x + 6.0, 0), (y, 1)]
+        .map(|(begin, axis)| (begin + 3.0 * curves[0][axis] + 3.0 * curves[0][2 + axis] + curves[0][4 + axis]) / 8.0);
     assert!(((half[0] - x).hypot(half[1] - y) - 6.0).abs() < 0.002, "{half:?}");
 }
 
 #[test]
 fn a_page_of_tags_has_as_many_as_fit() {
     let a4 = sheet("tags:36h11:50mm", "a4");
-    let names: Vec<&str> =
-        a4.words.iter().map(|it| it.text.as_str()).filter(|it| it.starts_with("tag")).collect();
+    let names: Vec<&str> = a4.words.iter().map(|it| it.text.as_str()).filter(|it| it.starts_with("tag")).collect();
     // Pitches of 70 mm: two and a tag beside each other, three below.
     assert_eq!((a4.points(), names.len(), names[0], names[8]), (4 * 9, 9, "tag0", "tag8"));
     // No more than exist.
@@ -314,8 +302,8 @@ fn the_pdf_reads_back_as_it_was_drawn() {
     for (read, it) in rectangles.iter().zip(&sheet.rectangles) {
         let ends = [read[0] + read[2], read[1] + read[3]];
         assert!(
-            (0..2).all(|axis| (read[axis] - it.from_mm[axis]).abs() < 1e-5
-                && (ends[axis] - it.to_mm[axis]).abs() < 2e-5)
+            (0..2)
+                .all(|axis| (read[axis] - it.from_mm[axis]).abs() < 1e-5 && (ends[axis] - it.to_mm[axis]).abs() < 2e-5)
         );
     }
     assert_eq!(stream.matches(") Tj").count(), sheet.words.len());

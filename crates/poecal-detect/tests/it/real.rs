@@ -22,8 +22,7 @@ fn read_known(file: &Path, [picture, corner, u, v]: [&str; 4]) -> Known {
     let text = fs::read_to_string(file).unwrap();
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let [picture, corner, u, v] =
-        [picture, corner, u, v].map(|it| names.iter().position(|name| *name == it).unwrap());
+    let [picture, corner, u, v] = [picture, corner, u, v].map(|it| names.iter().position(|name| *name == it).unwrap());
     let session = names.iter().position(|name| *name == "session");
     let mut known = Known::new();
     for line in lines {
@@ -37,11 +36,7 @@ fn read_known(file: &Path, [picture, corner, u, v]: [&str; 4]) -> Known {
 }
 
 /// Number of known corners that were found, number of all, and RMS distance of those that agree within a pixel.
-fn compare_corners(
-    detector: &Detector,
-    known: &Known,
-    picture: impl Fn(&str) -> PathBuf,
-) -> (usize, usize, f64) {
+fn compare_corners(detector: &Detector, known: &Known, picture: impl Fn(&str) -> PathBuf) -> (usize, usize, f64) {
     let (mut both, mut all, mut squares, mut near) = (0, 0, 0.0, 0);
     for (name, own) in known {
         let gray = GrayPicture::open(&picture(name)).unwrap().gray;
@@ -78,8 +73,7 @@ fn the_charuco_board_before_a_fixed_camera() {
     let folder = folder.join("handeye_images/charuco_static_camera");
     let known = read_known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
     let detector = Detector::new(&"charuco:5x7:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
-    let (both, all, rms_px) =
-        compare_corners(&detector, &known, |name| folder.join("images_gray_jpeg").join(name));
+    let (both, all, rms_px) = compare_corners(&detector, &known, |name| folder.join("images_gray_jpeg").join(name));
     // OpenCV has 294; both are off by some 0.07 px because of each other's windows.
     assert!(both >= 280 && all >= 370 && rms_px < 0.15);
 }
@@ -128,8 +122,7 @@ fn the_chessboards_before_two_arms() {
     let detector = Detector::new(&"chessboard:10x7:27mm".parse().unwrap());
     for (set, least) in [("ur10e_eye_in_hand", 1240), ("ur3e_eye_in_hand", 1500)] {
         let folder = folder.join(set);
-        let known =
-            read_known(&folder.join("pixels.csv"), ["image", "target", "u_subpix[px]", "v_subpix[px]"]);
+        let known = read_known(&folder.join("pixels.csv"), ["image", "target", "u_subpix[px]", "v_subpix[px]"]);
         let (both, _, rms_px) = compare_corners(&detector, &known, |name| {
             folder.join("images").join(name.replace("ur10e/", "measurements-2023-02-07/"))
         });

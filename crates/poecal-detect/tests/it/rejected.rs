@@ -28,12 +28,8 @@ fn no_corner_where_there_is_no_board() {
     for number in 0..pictures {
         let mut random = RandomGenerator::new(40_000 + number);
         let background = clutter([1280, 800], &mut random);
-        let picture = finish_picture(
-            background,
-            random.draw_uniform(0.4, 1.6),
-            random.draw_uniform(1.0, 6.0),
-            &mut random,
-        );
+        let picture =
+            finish_picture(background, random.draw_uniform(0.4, 1.6), random.draw_uniform(1.0, 6.0), &mut random);
         for detector in &detectors {
             let found = detector.detect(&picture);
             assert!(found.is_err(), "picture {number}: {found:?}");
@@ -60,9 +56,7 @@ fn no_corner_on_another_board() {
     for (number, other) in others.into_iter().enumerate() {
         let picture = draw_picture(other, &RandomScenes::default(), number);
         // Dots and tags are sought in every second one.
-        for detector in
-            detectors.iter().enumerate().filter(|it| it.0 < 2 || (it.0 + number) % 2 == 0).map(|it| it.1)
-        {
+        for detector in detectors.iter().enumerate().filter(|it| it.0 < 2 || (it.0 + number) % 2 == 0).map(|it| it.1) {
             let found = detector.detect(&picture);
             println!("{} on {other}: {}", detector.spec(), found.as_ref().err().unwrap());
         }
@@ -144,12 +138,8 @@ fn the_reason_is_told() {
     assert!(matches!(dark, RejectionReason::Dark(_)) && matches!(white, RejectionReason::Overexposed(_)));
     assert!(matches!(blurred, RejectionReason::Blurred(_)));
     let chessboard = Detector::new(&CHESSBOARD.parse().unwrap());
-    let draw = RandomScenes {
-        covered_each: 0,
-        square_px: [60.0, 80.0],
-        tilt_deg: [0.0, 10.0],
-        ..RandomScenes::default()
-    };
+    let draw =
+        RandomScenes { covered_each: 0, square_px: [60.0, 80.0], tilt_deg: [0.0, 10.0], ..RandomScenes::default() };
     let picture = draw_picture(CHESSBOARD, &draw, 0);
     let corners = chessboard.detect(&picture).unwrap().corners;
     // Only the upper half of it.
@@ -164,8 +154,7 @@ fn the_reason_is_told() {
 fn any_picture_is_borne() {
     let detectors = [CHARUCO, CHESSBOARD, CIRCLES, ASYMMETRIC, TAGS, APRILGRID].map(detector);
     let mut random = RandomGenerator::new(1);
-    for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)]
-    {
+    for (width, height) in [(1, 1), (1, 40), (40, 1), (2, 3), (5, 5), (7, 30), (13, 13), (64, 64), (300, 200)] {
         for kind in 0..4 {
             let levels = (0..width * height).map(|at| match kind {
                 0 => 0.0,

@@ -17,9 +17,7 @@ fn corners_of_loose_tags() {
         let tally = Tally::from_drawn_pictures(spec, &draw, trials.count);
         // A partly covered tag is not read, though some of its corners are visible.
         assert!(
-            tally.part() >= 0.94 - trials.tolerance_factor(0.06)
-                && tally.rms_px() <= limit_px
-                && tally.farthest < 1.0
+            tally.part() >= 0.94 - trials.tolerance_factor(0.06) && tally.rms_px() <= limit_px && tally.farthest < 1.0
         );
         // 68 % of a normal error, within the scatter of 800 numbers, and the smallest sigma, which is a floor.
         assert!((0.60..0.78).contains(&tally.share_within()));
@@ -28,11 +26,8 @@ fn corners_of_loose_tags() {
 
 #[test]
 fn corners_of_kalibrs_grid() {
-    let tally = Tally::from_drawn_pictures(
-        "aprilgrid:6x6:88mm:0.3",
-        &RandomScenes::default(),
-        trials(16).at_least(4).count,
-    );
+    let tally =
+        Tally::from_drawn_pictures("aprilgrid:6x6:88mm:0.3", &RandomScenes::default(), trials(16).at_least(4).count);
     // As on a ChArUco board: two edges cross.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.06 && tally.farthest < 1.0);
     assert!((0.60..0.78).contains(&tally.share_within()));

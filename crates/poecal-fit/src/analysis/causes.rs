@@ -44,8 +44,7 @@ pub(crate) fn explain(
         return Vec::new();
     }
     let space = spectrum.vectors.columns(first, count).into_owned();
-    let mut rules =
-        ExplainedDirections { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
+    let mut rules = ExplainedDirections { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
     // Offsets beside screws are a structural kernel, reported as such.
     let own = own_offsets(setup);
     let offsets = rules.places(|parameter| {
@@ -225,8 +224,7 @@ impl ExplainedDirections<'_> {
         let open = if several_axes { "are not determined" } else { "is not determined" };
         let words = self.degree_words(open, several_axes, &tilts);
         let several_targets = self.setup.session.data.targets.len() > 1;
-        let (targets, one) =
-            if several_targets { ("all targets are", "one") } else { ("the target is", "the target") };
+        let (targets, one) = if several_targets { ("all targets are", "one") } else { ("the target is", "the target") };
         let (axes, tilt, off) = if several_axes {
             ("the axes", "the tilts of these axes", "these axes")
         } else {
@@ -256,9 +254,7 @@ impl ExplainedDirections<'_> {
     fn orientation(&mut self) {
         let directions: Vec<Vec<f64>> = match self.excitation.turning {
             ToolTurning::Freely => return,
-            ToolTurning::Not => {
-                Matrix3::identity().column_iter().map(|u| self.shift(&u.into_owned())).collect()
-            }
+            ToolTurning::Not => Matrix3::identity().column_iter().map(|u| self.shift(&u.into_owned())).collect(),
             ToolTurning::About(direction) => vec![self.shift(&direction)],
         };
         let before = self.unexplained.ncols();
@@ -275,15 +271,11 @@ impl ExplainedDirections<'_> {
             (Cause::OneTurningDirection, format!("{tool} {words}"))
         };
         // Other directions that the joints hide by keeping the orientation have the same cause.
-        if cause == Cause::OneOrientation
-            && self.unexplained.ncols() > 0
-            && self.hidden_by_combination() >= before
-        {
+        if cause == Cause::OneOrientation && self.unexplained.ncols() > 0 && self.hidden_by_combination() >= before {
             taken += self.take(&self.places(|_| true));
         }
         let turns = |&joint: &usize| {
-            !self.excitation.still[joint]
-                && self.setup.session.robot.joints[joint].kind == JointKind::Revolute
+            !self.excitation.still[joint] && self.setup.session.robot.joints[joint].kind == JointKind::Revolute
         };
         let joints: Vec<usize> = (0..self.excitation.still.len()).filter(turns).collect();
         self.add(cause, &joints, taken, description);
@@ -300,8 +292,7 @@ impl ExplainedDirections<'_> {
         let mut shift = vec![0.0; self.setup.layout.dim()];
         for (parameter, places) in self.setup.layout.parameters() {
             let (frame, by) = match parameter {
-                Parameter::TargetPlace(TargetPlace { target })
-                | Parameter::TargetFrame(TargetFrame { target, .. }) => {
+                Parameter::TargetPlace(TargetPlace { target }) | Parameter::TargetFrame(TargetFrame { target, .. }) => {
                     (estimate.base_from_target[*target].rotation, tool)
                 }
                 Parameter::ScrewAxis(axis) => (estimate.base_from_axis[axis.joint].rotation, -seen),

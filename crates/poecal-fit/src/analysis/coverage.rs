@@ -183,17 +183,20 @@ pub fn ranges(session: &Session<'_>, rows: &[u32]) -> Vec<(f64, f64)> {
         }
         ranges
     });
-    parts.into_iter().fold(none, |whole, part| {
-        whole.into_iter().zip(part).map(|(a, b)| (a.0.min(b.0), a.1.max(b.1))).collect()
-    })
+    parts
+        .into_iter()
+        .fold(none, |whole, part| whole.into_iter().zip(part).map(|(a, b)| (a.0.min(b.0), a.1.max(b.1))).collect())
 }
 
 /// True if the joint values of some readings are all within the sampled ranges.
 pub fn is_within_ranges(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
     let indices = robot.reading_indices();
-    robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
-        coverage.contains(joint.kind, joint.reading.value(readings[index]))
-    })
+    robot
+        .joints
+        .iter()
+        .zip(&indices)
+        .zip(coverage)
+        .all(|((joint, &index), coverage)| coverage.contains(joint.kind, joint.reading.value(readings[index])))
 }
 
 /// A robot whose joints are limited to the range that all of these coverages sampled. If there is no such range, the range of the first coverage
@@ -205,8 +208,7 @@ pub fn within_sampled(robot: &Robot, coverages: &[&[JointCoverage]]) -> Robot {
         let own: Option<Vec<&JointCoverage>> = own.collect();
         let Some((first, others)) = own.as_deref().and_then(<[_]>::split_first) else { continue };
         let one = (first.sampled_min, first.sampled_max);
-        let both =
-            others.iter().fold(one, |(min, max), it| (min.max(it.sampled_min), max.min(it.sampled_max)));
+        let both = others.iter().fold(one, |(min, max), it| (min.max(it.sampled_min), max.min(it.sampled_max)));
         let (lower, upper) = if both.0 <= both.1 { both } else { one };
         if lower <= upper {
             joint.limits = Some(JointLimits { lower, upper });

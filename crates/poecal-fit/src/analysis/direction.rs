@@ -45,10 +45,7 @@ impl Cause {
     /// True if other combinations of the same joint values would have determined the direction.
     pub(crate) fn is_combination(self) -> bool {
         match self {
-            Cause::OneOrientation
-            | Cause::OneTurningDirection
-            | Cause::MovedTogether
-            | Cause::DependentMotion => true,
+            Cause::OneOrientation | Cause::OneTurningDirection | Cause::MovedTogether | Cause::DependentMotion => true,
             Cause::OwnAxis
             | Cause::BaseFrame
             | Cause::JointOffsets

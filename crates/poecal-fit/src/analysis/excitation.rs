@@ -69,8 +69,7 @@ pub(crate) struct Excitation {
 impl Excitation {
     pub(crate) fn new(setup: &AnalysisSetup<'_>) -> Self {
         let joints = &setup.session.robot.joints;
-        let ranges: Vec<f64> =
-            ranges(&setup.session, setup.rows).iter().map(|(a, b)| (b - a).max(0.0)).collect();
+        let ranges: Vec<f64> = ranges(&setup.session, setup.rows).iter().map(|(a, b)| (b - a).max(0.0)).collect();
         let still: Vec<bool> = ranges
             .iter()
             .zip(joints)
@@ -120,8 +119,7 @@ impl Excitation {
                 let a = joint.joint;
                 is_seen[a] = true;
                 let arm = chain.target.translation - joint.origin;
-                let away =
-                    if joint.kind == JointKind::Revolute { arm.cross(&joint.z).norm() } else { f64::MAX };
+                let away = if joint.kind == JointKind::Revolute { arm.cross(&joint.z).norm() } else { f64::MAX };
                 away_m[a] = away_m[a].max(away);
                 for other in &chain.joints {
                     let b = other.joint;
@@ -254,9 +252,7 @@ fn joint_groups(setup: &AnalysisSetup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
     let spreads: Vec<f64> = moved
         .iter()
         .zip(&means)
-        .map(|(&joint, mean)| {
-            (rows.iter().map(|&row| (value(row, joint) - mean).powi(2)).sum::<f64>() / count).sqrt()
-        })
+        .map(|(&joint, mean)| (rows.iter().map(|&row| (value(row, joint) - mean).powi(2)).sum::<f64>() / count).sqrt())
         .collect();
     let mut correlation = vec![0.0; k * k];
     for &row in &rows {
@@ -268,8 +264,7 @@ fn joint_groups(setup: &AnalysisSetup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
     let tied = values.iter().take_while(|&&value| value < TOGETHER * TOGETHER).count();
     let mut groups: Vec<BTreeSet<usize>> = Vec::new();
     for relation in subspace::sparse_basis(&vectors.columns(0, tied).into_owned()) {
-        let mut group: BTreeSet<usize> =
-            (0..k).filter(|&i| relation[i].abs() > 0.1).map(|i| moved[i]).collect();
+        let mut group: BTreeSet<usize> = (0..k).filter(|&i| relation[i].abs() > 0.1).map(|i| moved[i]).collect();
         groups.retain(|other| {
             let apart = other.is_disjoint(&group);
             if !apart {

@@ -68,9 +68,7 @@ pub fn residual_variance(normal: &NormalEquations) -> f64 {
 pub fn effective_unknowns(normal: &NormalEquations, part: &NormalEquations) -> f64 {
     let n = normal.dim();
     let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
-    let Some(factor) =
-        linalg::cholesky(&normal.gram, n, (ROUNDING * ROUNDING * largest).max(f64::MIN_POSITIVE))
-    else {
+    let Some(factor) = linalg::cholesky(&normal.gram, n, (ROUNDING * ROUNDING * largest).max(f64::MIN_POSITIVE)) else {
         return 0.0;
     };
     linalg::trace_of_quotient(&factor, &part.gram, n)
@@ -88,16 +86,13 @@ pub fn identifiability(setup: &AnalysisSetup<'_>, gram: &[f64], variance: f64) -
     let spectrum = Spectrum::new(gram, n, variance, setup.session.length_m);
     let values = &spectrum.values;
     let largest = values.last().copied().unwrap_or(0.0);
-    let condition =
-        values.get(spectrum.undetermined).map_or(f64::INFINITY, |&value| (largest / value).sqrt());
+    let condition = values.get(spectrum.undetermined).map_or(f64::INFINITY, |&value| (largest / value).sqrt());
     let singular: Vec<f64> = {
         let least = rounding(values);
         values.iter().rev().map(|&value| if value > least { value.sqrt() } else { 0.0 }).collect()
     };
     let excitation = Excitation::new(setup);
-    let weak = (spectrum.undetermined..n)
-        .take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.session.length_m)
-        .count();
+    let weak = (spectrum.undetermined..n).take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.session.length_m).count();
     // The offset of a joint with a held axis is an unknown, also where a free target or device hides it.
     let mut unidentifiable = open_offsets(setup, &base);
     let open: usize = unidentifiable.iter().map(|direction| direction.directions).sum();
@@ -112,11 +107,7 @@ pub fn identifiability(setup: &AnalysisSetup<'_>, gram: &[f64], variance: f64) -
         condition,
         unidentifiable,
         weak: hardly,
-        structural: structural_kernel(
-            setup,
-            motions.of_base,
-            (base.len() - motions.of_base).saturating_sub(open),
-        ),
+        structural: structural_kernel(setup, motions.of_base, (base.len() - motions.of_base).saturating_sub(open)),
         observability: Observability::new(&singular, setup.rows.len()),
         spectrum,
     }
@@ -142,9 +133,7 @@ fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64
 fn has_offset(setup: &AnalysisSetup<'_>, joint: &Joint) -> bool {
     let name = |at: usize| setup.session.robot.joints.get(at).map(|it| it.name.as_str());
     let is_it = |parameter: &Parameter| {
-        parameter
-            .value_term()
-            .is_some_and(|it| it.term == Term::OFFSET && name(it.joint) == Some(&joint.name))
+        parameter.value_term().is_some_and(|it| it.term == Term::OFFSET && name(it.joint) == Some(&joint.name))
     };
     setup.layout.parameters().any(|(parameter, _)| is_it(parameter))
 }
@@ -154,8 +143,7 @@ fn has_offset(setup: &AnalysisSetup<'_>, joint: &Joint) -> bool {
 fn structural_kernel(setup: &AnalysisSetup<'_>, base_motions: usize, offsets: usize) -> Vec<Direction> {
     let unknowns = setup.session.unknowns;
     let joints = setup.session.robot.joints.iter().enumerate();
-    let joints: Vec<&Joint> =
-        joints.filter(|(joint, _)| unknowns.moves_axis(*joint)).map(|(_, joint)| joint).collect();
+    let joints: Vec<&Joint> = joints.filter(|(joint, _)| unknowns.moves_axis(*joint)).map(|(_, joint)| joint).collect();
     let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
     let sliding = joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let turning = joints.len() - sliding;
@@ -168,17 +156,14 @@ fn structural_kernel(setup: &AnalysisSetup<'_>, base_motions: usize, offsets: us
     };
     let own = match (turning, sliding) {
         (_, 0) => "turning or shifting a revolute joint along its own axis has no effect: not an unknown",
-        (0, _) => {
-            "shifting a prismatic joint, or turning it about its own direction, has no effect: not an unknown"
-        }
+        (0, _) => "shifting a prismatic joint, or turning it about its own direction, has no effect: not an unknown",
         _ => {
             "turning or shifting a revolute joint along its own axis has no effect, nor has shifting a prismatic joint: not an unknown"
         }
     };
     add(Cause::OwnAxis, 2 * turning + 4 * sliding, &names, own);
     if setup.session.base_free() {
-        let base =
-            "base frame: moving it under all axes is the same as moving the device: kept as in the model";
+        let base = "base frame: moving it under all axes is the same as moving the device: kept as in the model";
         add(Cause::BaseFrame, 6, &[], base);
     }
     let base = "base frame: the held axes and targets leave motions of it that are the same as moving the device: chosen nearest to the model";

@@ -10,9 +10,7 @@ use super::setup::AnalysisSetup;
 use super::spectrum::PLAUSIBLE;
 use crate::parameters::{Parameter, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
-use crate::start::{
-    Registration, clock_parameters, device_parameter, range_parameters, register, target_parameters,
-};
+use crate::start::{Registration, clock_parameters, device_parameter, range_parameters, register, target_parameters};
 use crate::state::{Estimate, Linkage, PackedValues, RowChain, Session, nominal_estimate};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Dataset, Noise, Observation};
@@ -165,17 +163,12 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_measured(
-    robot: &Robot,
-    data: &Dataset,
-    planned: &PlannedSession,
-) -> Result<ExpectedUncertainty> {
+pub fn identify_measured(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<ExpectedUncertainty> {
     check_unknowns(robot, data.station_count() + data.targets.len())?;
     let packed = PackedValues::from_dataset(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let session = Session::new(robot, data, &packed, planned.device_free);
-    let registration =
-        Registration { session, rows: &rows, noise: planned.noise, targets_free: false, prior: None };
+    let registration = Registration { session, rows: &rows, noise: planned.noise, targets_free: false, prior: None };
     let estimate = register(&registration, &nominal_estimate(robot, data)).0;
     let pictures = (!data.pictures.is_empty()).then(|| MeasuredPictures {
         count: data.pictures.all.len(),
@@ -218,16 +211,13 @@ fn foresee(
     free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
     free.extend(clock_parameters(&session, &rows).map(Parameter::ClockUnknown));
     let problem = Problem::new(session, rows.clone(), free, planned.noise);
-    let setup = AnalysisSetup {
-        session,
-        rows: &rows,
-        estimate: &estimate,
-        layout: problem.layout(),
-        noise: planned.noise,
-    };
+    let setup =
+        AnalysisSetup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
     let gram = problem.normal(&estimate).gram;
     if !gram.iter().all(|value| value.is_finite()) {
-        return ErrorKind::Measurement.refuse("found joint readings beyond what can be computed with, expected radians and metres: check their units");
+        return ErrorKind::Measurement.refuse(
+            "found joint readings beyond what can be computed with, expected radians and metres: check their units",
+        );
     }
     let identifiability = identifiability(&setup, &gram, 1.0);
     let expected = predict_error(&setup, &identifiability);
@@ -242,11 +232,7 @@ fn foresee(
 }
 
 /// The measurements that the nominal model predicts, and device frames that are not the model's.
-pub fn predicted_data(
-    robot: &Robot,
-    readings: &[f64],
-    planned: &PlannedSession,
-) -> Result<(Dataset, Vec<Pose>)> {
+pub fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<(Dataset, Vec<Pose>)> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
@@ -261,13 +247,11 @@ pub fn predicted_data(
     }
     let pairs = pairs(robot);
     if pairs.is_empty() {
-        return ErrorKind::Problem.refuse(
-            "found instruments and targets on the same links only, expected joints between them: name others",
-        );
+        return ErrorKind::Problem
+            .refuse("found instruments and targets on the same links only, expected joints between them: name others");
     }
     let planned_rows = readings.chunks_exact(width).enumerate();
-    let planned_rows =
-        planned_rows.flat_map(|(row, readings)| pairs.iter().map(move |&pair| (row, readings, pair)));
+    let planned_rows = planned_rows.flat_map(|(row, readings)| pairs.iter().map(move |&pair| (row, readings, pair)));
     for (row, readings, (instrument, target)) in planned_rows {
         let pose = match (instrument, target) {
             (None, None) => robot.forward_kinematics(readings),
@@ -286,8 +270,7 @@ pub fn predicted_data(
 fn predict_error(setup: &AnalysisSetup<'_>, found: &Identifiability) -> ExpectedError {
     let robot = setup.session.robot;
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
-    let readings: Vec<f64> =
-        (0..CONFIGURATIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
+    let readings: Vec<f64> = (0..CONFIGURATIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
     let packed = PackedValues::new(robot, &readings, robot.reading_names().len());
     let mut estimate = setup.estimate.clone();
     estimate.device_from_base = Pose::identity();
@@ -326,8 +309,7 @@ mod tests {
     /// The rank is that of a calibration by them: 4 of each of six joints and 2 more; the size of the robot stays undetermined.
     #[test]
     fn balls_in_sockets_have_the_rank_of_the_closed_form() {
-        let made =
-            Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::SOCKET).unwrap();
+        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::SOCKET).unwrap();
         let planned = PlannedSession { kind: SessionKind::SOCKET, ..PlannedSession::default() };
         let found = identify_measured(&elbow(), &made.data, &planned).unwrap();
         assert_eq!(found.identifiability.rank, 26);

@@ -202,8 +202,7 @@ mod tests {
 
     /// Difference from the expected numbers, relative to these.
     fn relative_distance(found: &[f64], expected: &[f64]) -> f64 {
-        let norm =
-            |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();
+        let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();
         assert_eq!(found.len(), expected.len());
         norm(&mut found.iter().zip(expected).map(|(a, b)| a - b)) / norm(&mut expected.iter().copied())
     }

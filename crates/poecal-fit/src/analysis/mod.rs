@@ -20,8 +20,7 @@ pub use coverage::{JointCoverage, coverage, is_within_ranges, ranges, within_sam
 pub use direction::{Cause, Direction};
 pub use identifiability::{Identifiability, effective_unknowns, identifiability, residual_variance};
 pub use identify::{
-    ExpectedError, ExpectedUncertainty, MeasuredPictures, PlannedSession, identify, identify_measured,
-    predicted_data,
+    ExpectedError, ExpectedUncertainty, MeasuredPictures, PlannedSession, identify, identify_measured, predicted_data,
 };
 pub use influence::{Influence, influence};
 pub use kinematic_paths::{KinematicPath, ways};

@@ -19,9 +19,10 @@ pub(crate) type OpenOffset = (usize, usize);
 /// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with the index of its offset in a step.
 pub(crate) fn own_offsets(setup: &AnalysisSetup<'_>) -> Vec<OpenOffset> {
     let is_held = |joint: usize| {
-        !setup.layout.parameters().any(|(it, _)| {
-            it.value_term().is_none() && it.model().subject() == ParameterSubject::Joint(joint)
-        })
+        !setup
+            .layout
+            .parameters()
+            .any(|(it, _)| it.value_term().is_none() && it.model().subject() == ParameterSubject::Joint(joint))
     };
     let offset = |(parameter, places): (&Parameter, &[(usize, f64)])| {
         let term = parameter.value_term().filter(|it| it.term == Term::OFFSET && is_held(it.joint))?;
@@ -39,8 +40,7 @@ pub(crate) fn open_offsets(setup: &AnalysisSetup<'_>, directions: &[Vec<f64>]) -
     }
     let space = DMatrix::from_fn(n, directions.len(), |row, column| directions[column][row]);
     let is_open = |space: &DMatrix<f64>, place: usize| space.row(place).norm() > OPEN;
-    let open: Vec<OpenOffset> =
-        own_offsets(setup).into_iter().filter(|(_, place)| is_open(&space, *place)).collect();
+    let open: Vec<OpenOffset> = own_offsets(setup).into_iter().filter(|(_, place)| is_open(&space, *place)).collect();
     let mut groups: Vec<(Vec<Block>, Vec<OpenOffset>)> = Vec::new();
     for &(joint, place) in &open {
         let hidden = hiding_blocks(setup, &open, joint);
@@ -70,11 +70,8 @@ fn hiding_blocks(setup: &AnalysisSetup<'_>, open: &[OpenOffset], joint: usize) -
     };
     let frames = of(&|it| matches!(it, Block::Frame(_)));
     let targets = of(&|it| matches!(it, Block::Target(_)));
-    let others: Vec<Block> = open
-        .iter()
-        .filter(|(other, _)| *other != joint)
-        .map(|(other, _)| Block::Term(*other, Term::OFFSET))
-        .collect();
+    let others: Vec<Block> =
+        open.iter().filter(|(other, _)| *other != joint).map(|(other, _)| Block::Term(*other, Term::OFFSET)).collect();
     let both = [frames.clone(), targets.clone()].concat();
     let mut sets = vec![frames, targets, both];
     sets.extend(others.iter().map(|it| vec![*it]));

@@ -97,17 +97,12 @@ impl ExplainedDirections<'_> {
             return;
         }
         let several = joints.len() > 1;
-        let (open, subject) = if several {
-            ("cannot be separated", "their screws")
-        } else {
-            ("cannot be determined", "its screw")
-        };
+        let (open, subject) =
+            if several { ("cannot be separated", "their screws") } else { ("cannot be determined", "its screw") };
         let words = self.degree_words(open, several, &self.screws(&joints));
         let directions = self.take(&self.places(|_| true));
-        let description = format!(
-            "{} moved far enough, but not independently of the others: {subject} {words}",
-            self.names(&joints)
-        );
+        let description =
+            format!("{} moved far enough, but not independently of the others: {subject} {words}", self.names(&joints));
         self.add(Cause::DependentMotion, &joints, directions, description);
     }
 
@@ -148,10 +143,7 @@ impl ExplainedDirections<'_> {
         let part = |joint: &usize| {
             let screws = self.screws(&[*joint]);
             let squares = self.unexplained.column_iter().map(|column| {
-                screws
-                    .iter()
-                    .map(|unit| column.iter().zip(unit).map(|(a, b)| a * b).sum::<f64>().powi(2))
-                    .sum::<f64>()
+                screws.iter().map(|unit| column.iter().zip(unit).map(|(a, b)| a * b).sum::<f64>().powi(2)).sum::<f64>()
             });
             squares.fold(0.0, f64::max) > NOTABLE
         };
@@ -164,13 +156,10 @@ impl ExplainedDirections<'_> {
             let (joints, parts) = self.parts(&direction);
             let (open, plural) = match (parts.len(), self.degree) {
                 (1, _) => ("is not determined by these measurements", false),
-                (_, Degree::Undetermined) => {
-                    ("can change together without effect on these measurements", true)
-                }
+                (_, Degree::Undetermined) => ("can change together without effect on these measurements", true),
                 (_, Degree::Weak(_)) => ("", true),
             };
-            let subject =
-                if parts.is_empty() { "a combination of all unknowns".to_owned() } else { join(&parts) };
+            let subject = if parts.is_empty() { "a combination of all unknowns".to_owned() } else { join(&parts) };
             let together = if self.degree != Degree::Undetermined && plural { " together" } else { "" };
             let words = self.degree_words(open, plural, &[direction]);
             let description = format!("{subject}{together} {words}");

@@ -37,12 +37,7 @@ impl Spectrum {
     pub fn new(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Self {
         if !gram.iter().all(|value| value.is_finite()) {
             // After an overflow no unknown is determined.
-            return Spectrum {
-                values: vec![0.0; n],
-                vectors: DMatrix::identity(n, n),
-                undetermined: n,
-                variance,
-            };
+            return Spectrum { values: vec![0.0; n], vectors: DMatrix::identity(n, n), undetermined: n, variance };
         }
         let (values, vectors) = linalg::symmetric_eigen(gram, n);
         let least = rounding(&values).max(variance / (PLAUSIBLE * length_m).powi(2));

@@ -14,11 +14,7 @@ pub(crate) fn remove_directions(space: &DMatrix<f64>, directions: &[Vec<f64>]) -
 }
 
 /// The same with another singular value above which a direction counts.
-pub(crate) fn without_beyond(
-    space: &DMatrix<f64>,
-    directions: &[Vec<f64>],
-    visible: f64,
-) -> (DMatrix<f64>, usize) {
+pub(crate) fn without_beyond(space: &DMatrix<f64>, directions: &[Vec<f64>], visible: f64) -> (DMatrix<f64>, usize) {
     let k = space.ncols();
     let basis = orthonormal(directions, space.nrows());
     let seen: Vec<Vec<f64>> = basis
@@ -59,8 +55,7 @@ fn orthonormal(vectors: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
 
 /// Basis of the same space with as many zeros as elimination produces: unit directions of few unknowns each.
 pub(crate) fn sparse_basis(space: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    let mut rows: Vec<Vec<f64>> =
-        space.column_iter().map(|column| column.iter().copied().collect()).collect();
+    let mut rows: Vec<Vec<f64>> = space.column_iter().map(|column| column.iter().copied().collect()).collect();
     let count = rows.len();
     for k in 0..count {
         let pivot = (k..count)

@@ -123,9 +123,7 @@ impl RowChange {
             | RowChange::Invert
             | RowChange::Transpose
             | RowChange::Turn(_)
-            | RowChange::Mirror(..) => {
-                seen.frame().map_or(seen, |pose| Measurement::of_pose(&self.pose(row, &pose)))
-            }
+            | RowChange::Mirror(..) => seen.frame().map_or(seen, |pose| Measurement::of_pose(&self.pose(row, &pose))),
             RowChange::Scale(..)
             | RowChange::Scales(_)
             | RowChange::Exchange(..)
@@ -157,9 +155,7 @@ impl RowChange {
             }
             RowChange::Invert => seen.inverse(),
             RowChange::Transpose => Pose::new(turned.transpose(), translation),
-            RowChange::Turn(others) => {
-                Pose::new(others.get(row).copied().flatten().unwrap_or(turned), translation)
-            }
+            RowChange::Turn(others) => Pose::new(others.get(row).copied().flatten().unwrap_or(turned), translation),
             RowChange::Mirror(mirror, turns) => {
                 let turned = if *turns { mirror * turned * mirror } else { turned };
                 Pose::new(turned, mirror * translation)

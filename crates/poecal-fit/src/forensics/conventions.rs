@@ -68,8 +68,7 @@ fn distinct_conventions(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> 
     let mut kept: Vec<ScoredConvention> = Vec::new();
     for one in judged {
         let rotations = &one.0.1;
-        let same =
-            |other: &ScoredConvention| rotations.iter().zip(&other.0.1).all(|(a, b)| (a - b).amax() < SAME);
+        let same = |other: &ScoredConvention| rotations.iter().zip(&other.0.1).all(|(a, b)| (a - b).amax() < SAME);
         match kept.iter().position(same) {
             Some(at) if one.1.0 < kept[at].1.0 => kept[at] = one,
             None if kept.len() < CANDIDATES => kept.push(one),
@@ -118,9 +117,7 @@ fn hypothesis(meaning: Reinterpretation, turns: Vec<Option<Matrix3<f64>>>) -> Mi
         });
         (
             format!("taking the orientation ({}) in {is} instead of {read_as}", words(meant)),
-            format!(
-                "state the unit of the angles in the header{columns}, or in a mapping (`unit = \"{unit}\"`)"
-            ),
+            format!("state the unit of the angles in the header{columns}, or in a mapping (`unit = \"{unit}\"`)"),
         )
     } else {
         let columns = columns(read).map_or_else(

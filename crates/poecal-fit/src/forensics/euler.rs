@@ -11,9 +11,8 @@ pub(crate) fn words(angles: Angles) -> String {
         Angles::ROLL_PITCH_YAW => "roll, pitch, yaw (extrinsic xyz)".to_owned(),
         Angles::RotationVector => "a rotation vector".to_owned(),
         Angles::Intrinsic(_) | Angles::Extrinsic(_) => {
-            let whose = angles
-                .maker()
-                .map_or_else(String::new, |it| format!(" ({}'s {})", it.maker, it.names.join(", ")));
+            let whose =
+                angles.maker().map_or_else(String::new, |it| format!(" ({}'s {})", it.maker, it.names.join(", ")));
             format!("{} angles{whose}", angles.to_string().replace('_', " "))
         }
     }

@@ -54,8 +54,7 @@ impl ExchangeableNames {
 
     /// Groups of rows for which exchanging all is as good as exchanging none: those of each plane, or all that count.
     fn groups(self, all: &Dataset) -> Vec<Vec<usize>> {
-        let place =
-            |row: &usize| if self == ExchangeableNames::Sides { all.observations[*row].station } else { 0 };
+        let place = |row: &usize| if self == ExchangeableNames::Sides { all.observations[*row].station } else { 0 };
         let mut groups = vec![Vec::new(); all.station_count()];
         let rows = (0..all.len()).filter(|&row| self.counts(&all.observations[row]));
         rows.for_each(|row| groups[place(&row)].push(row));
@@ -113,19 +112,12 @@ pub(crate) struct Exchange {
 
 impl Exchange {
     /// The diagnosis. `searched` are the rows that were searched.
-    pub(crate) fn diagnosis(
-        self,
-        data: &Dataset,
-        searched: &[u32],
-        word: impl Fn(usize) -> String,
-    ) -> Diagnosis {
+    pub(crate) fn diagnosis(self, data: &Dataset, searched: &[u32], word: impl Fn(usize) -> String) -> Diagnosis {
         let rows: Vec<u32> = self.rows.into_iter().filter_map(|row| searched.get(row).copied()).collect();
         let where_ = where_words(data, searched, self.names, &rows);
         let exchanging = |a, b| format!("exchanging the names of {} and {}", word(a), word(b));
         let (kind, action, what) = match self.names {
-            ExchangeableNames::Targets(a, b) => {
-                (DiagnosisKind::TargetsSwapped, exchanging(a, b), "the targets' names")
-            }
+            ExchangeableNames::Targets(a, b) => (DiagnosisKind::TargetsSwapped, exchanging(a, b), "the targets' names"),
             ExchangeableNames::Stations(a, b) => {
                 (DiagnosisKind::PlacesSwapped, exchanging(a, b), "which of them was meant")
             }
@@ -173,8 +165,7 @@ fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: ExchangeableNames) -> Vec<E
     let mut found: Vec<_> = blocks.par_iter().map(rough).collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.truncate(NEARER);
-    let firmly =
-        |(_, estimate, data): (f64, Estimate, Dataset)| strong.calibrate(&subsample(&data), &estimate, SHORT);
+    let firmly = |(_, estimate, data): (f64, Estimate, Dataset)| strong.calibrate(&subsample(&data), &estimate, SHORT);
     let mut found: Vec<_> = found.into_par_iter().map(firmly).collect();
     found.sort_by(|a, b| a.1.total_m.total_cmp(&b.1.total_m));
     found.into_iter().take(FIRSTS).map(|(estimate, _)| estimate).collect()
@@ -223,11 +214,9 @@ fn reassign_rows(
     for (fitter, mut least) in firmly.into_iter().chain([(fitter, base_m)]) {
         for _ in 0..ROUNDS {
             let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
-            let margin = names.margin()
-                * kept.iter().zip(&other).map(|(kept, other)| kept.min(*other)).sum::<f64>()
+            let margin = names.margin() * kept.iter().zip(&other).map(|(kept, other)| kept.min(*other)).sum::<f64>()
                 / all.len().max(1) as f64;
-            let next: Vec<bool> =
-                kept.iter().zip(&other).map(|(kept, other)| other + margin < *kept).collect();
+            let next: Vec<bool> = kept.iter().zip(&other).map(|(kept, other)| other + margin < *kept).collect();
             let data = subsample(&with_exchanged(all, names, |row| next[row]));
             let registered = fitter.roughly_registered(&data).0;
             let (calibrated, misfit) = fitter.calibrate(&data, &registered, SHORT);

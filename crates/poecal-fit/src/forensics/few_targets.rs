@@ -147,12 +147,7 @@ fn place(fitter: &Fitter<'_>, all: &Dataset, estimate: &mut Estimate) {
 }
 
 /// Calls `each` with the transformation of every row from measurement to the target at zero joint values, in the base frame.
-pub(crate) fn for_links(
-    fitter: &Fitter<'_>,
-    all: &Dataset,
-    estimate: &Estimate,
-    mut each: impl FnMut(usize, &Pose),
-) {
+pub(crate) fn for_links(fitter: &Fitter<'_>, all: &Dataset, estimate: &Estimate, mut each: impl FnMut(usize, &Pose)) {
     let packed = fitter.pack_values(all);
     let linkage = Linkage::new(estimate);
     let mut chain = RowChain::default();

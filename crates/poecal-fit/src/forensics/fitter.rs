@@ -7,12 +7,10 @@ use crate::gauge;
 use crate::parameters::{Parameter, ScrewAxis, ValueTerm};
 use crate::problem::{Prior, Problem};
 use crate::start::{
-    Registration, clock_parameters, device_parameter, range_parameters, register, register_roughly,
-    target_parameters,
+    Registration, clock_parameters, device_parameter, range_parameters, register, register_roughly, target_parameters,
 };
 use crate::state::{
-    Estimate, InstrumentMount, Linkage, PackedValues, RowChain, RowError, Session, nominal_estimate,
-    sample_rows,
+    Estimate, InstrumentMount, Linkage, PackedValues, RowChain, RowError, Session, nominal_estimate, sample_rows,
 };
 use poecal_arm::lie::{Freedom, Pose, Screw};
 use poecal_model::measurement::{Dataset, Noise, Observation, Quantity, StatedDeviations};
@@ -115,8 +113,7 @@ impl<'a> Fitter<'a> {
                 *in_base.device_mut(station) = Pose::identity();
             }
         });
-        let (linkage, packed, mut chain) =
-            (Linkage::new(&in_base), self.pack_values(data), RowChain::default());
+        let (linkage, packed, mut chain) = (Linkage::new(&in_base), self.pack_values(data), RowChain::default());
         let mut place = |row: usize| {
             chain.evaluate(&linkage, &packed, row, &data.observations[row]);
             chain.target.translation
@@ -174,12 +171,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// Fits the screws from a registration in a few iterations.
-    pub(crate) fn calibrate(
-        &self,
-        data: &Dataset,
-        registered: &Estimate,
-        iterations: usize,
-    ) -> (Estimate, Misfit) {
+    pub(crate) fn calibrate(&self, data: &Dataset, registered: &Estimate, iterations: usize) -> (Estimate, Misfit) {
         let kinds = registered.kinds().iter().enumerate();
         // The first device frame stays: beside the screws it is redundant.
         let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
@@ -207,9 +199,7 @@ impl<'a> Fitter<'a> {
         iterations: usize,
     ) -> (Estimate, Misfit) {
         let kinds = registered.kinds();
-        let free = |&joint: &usize| {
-            kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term }))
-        };
+        let free = |&joint: &usize| kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term }));
         let free = joints.iter().filter_map(free).chain(self.devices(data, None)).collect();
         self.fit(data, registered, free, iterations)
     }
@@ -226,9 +216,9 @@ impl<'a> Fitter<'a> {
         let kinds = registered.kinds();
         let axes = kinds.iter().enumerate();
         let axes = axes.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
-        let terms = joints.iter().filter_map(|&joint| {
-            kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term }))
-        });
+        let terms = joints
+            .iter()
+            .filter_map(|&joint| kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term })));
         let free = axes.chain(terms).chain(self.devices(data, None)).collect();
         Fitter { constrained: Some((prior, self.spread_m(data))), weight: 1.0, ..self.clone() }
             .fit(data, registered, free, LONG)

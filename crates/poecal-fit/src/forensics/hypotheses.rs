@@ -30,8 +30,7 @@ impl MistakeHypothesis {
 
     /// Factor on all measured lengths.
     pub(crate) fn size_factor(&self) -> f64 {
-        let factor =
-            |change: &RowChange| if let RowChange::Resize(factor, _, true) = change { *factor } else { 1.0 };
+        let factor = |change: &RowChange| if let RowChange::Resize(factor, _, true) = change { *factor } else { 1.0 };
         self.changes.iter().map(factor).product()
     }
 
@@ -58,8 +57,7 @@ impl ReadingColumns {
         let names: Vec<String> = robot.reading_names().into_iter().filter(of_joints).collect();
         let kinds = names.iter().map(|name| robot.reading_kind(name)).collect();
         let at = |name: &String| names.iter().position(|it| it == name);
-        let level =
-            level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, -factor)));
+        let level = level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, -factor)));
         ReadingColumns { kinds, level, names }
     }
 
@@ -78,10 +76,9 @@ impl ReadingColumns {
 /// Units of readings: degrees for radians and millimetres for metres, of all joints or of single ones.
 pub(crate) fn joint_units(columns: &ReadingColumns) -> Vec<MistakeHypothesis> {
     let mut all = Vec::new();
-    for (kind, factor, large, small) in [
-        (ReadingKind::Angle, 180.0 / PI, "degrees", "radians"),
-        (ReadingKind::Length, 1e3, "millimetres", "metres"),
-    ] {
+    for (kind, factor, large, small) in
+        [(ReadingKind::Angle, 180.0 / PI, "degrees", "radians"), (ReadingKind::Length, 1e3, "millimetres", "metres")]
+    {
         let members = columns.columns_of_kind(kind);
         let mut sets: Vec<Vec<usize>> = members.iter().map(|&column| vec![column]).collect();
         if members.len() > 1 {
@@ -150,18 +147,11 @@ pub(crate) fn joint_couplings(columns: &ReadingColumns) -> Vec<MistakeHypothesis
 
 /// A key of TOML, in quotes if it is not plain letters and digits.
 pub(crate) fn toml_key(name: &str) -> String {
-    let is_plain =
-        name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
+    let is_plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
     if is_plain { name.to_owned() } else { format!("{name:?}") }
 }
 
-fn coupling(
-    columns: &ReadingColumns,
-    column: usize,
-    other: usize,
-    own: f64,
-    factor: f64,
-) -> MistakeHypothesis {
+fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, factor: f64) -> MistakeHypothesis {
     let (name, before) = (columns.names[column].as_str(), columns.names[other].as_str());
     if columns.level == Some((other, column, factor)) && own == 1.0 {
         return MistakeHypothesis::new(
@@ -179,10 +169,7 @@ fn coupling(
     MistakeHypothesis::new(
         DiagnosisKind::JointsCoupled,
         RowChange::Combine { column, own, other, factor },
-        format!(
-            "taking {name} as {}its readings {joined} those of {before}",
-            if own < 0.0 { "minus " } else { "" }
-        ),
+        format!("taking {name} as {}its readings {joined} those of {before}", if own < 0.0 { "minus " } else { "" }),
         format!(
             "check whether the controller states {name} together with {before}, as relative to the horizontal; in a mapping \
              file: `[joints]` and below it `{0} = {{ columns = {{ {0} = {1}1, {2} = {3}1 }} }}`",
@@ -241,9 +228,7 @@ pub(crate) fn length_units(of: Quantity, is_all: bool) -> Vec<MistakeHypothesis>
             kind,
             RowChange::Resize(factor, of, is_all),
             format!("multiplying the {}s by {}", of.name(), factor_words(factor)),
-            format!(
-                "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
-            ),
+            format!("check their unit, since it looks as if {words} (or the model's lengths are in another one)"),
         )
     };
     OTHER_LENGTHS.into_iter().map(one).collect()

@@ -83,11 +83,7 @@ pub(crate) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
     Some(diagnosis(&best, base, &score))
 }
 
-fn single_mistakes(
-    fitter: &Fitter<'_>,
-    columns: &ReadingColumns,
-    sample: &Dataset,
-) -> Vec<MistakeHypothesis> {
+fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Dataset) -> Vec<MistakeHypothesis> {
     let turned = sample.observations.iter().any(|row| row.measurement.orientation().is_some());
     let mut all = joint_units(columns);
     let placed = sample.observations.iter().any(|row| row.measurement.position().is_some());
@@ -180,11 +176,7 @@ fn best_of(
     let rough = |(index, hypothesis): (usize, &MistakeHypothesis)| {
         // Rows are shifted before targets and rows are sampled.
         let shifts = hypothesis.kind == DiagnosisKind::RowShift;
-        let data = if shifts {
-            subsample(&few.select_rows(hypothesis.apply(all)))
-        } else {
-            hypothesis.apply(sample)
-        };
+        let data = if shifts { subsample(&few.select_rows(hypothesis.apply(all))) } else { hypothesis.apply(sample) };
         let (estimate, registered) = fitter.roughly_registered(&data);
         (index, data, estimate, registered)
     };

@@ -59,12 +59,7 @@ const WHOLE: usize = 2000;
 /// Mistakes in some rows of the data, in their order: docs/theory.md §9, *Diagnosis of the input*. For robots with more than
 /// [`MOST_READINGS`] only repeated rows are reported.
 #[must_use]
-pub fn diagnose(
-    robot: &Robot,
-    data: &Dataset,
-    rows: &[u32],
-    options: &DiagnosisOptions<'_>,
-) -> Vec<Diagnosis> {
+pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &DiagnosisOptions<'_>) -> Vec<Diagnosis> {
     let mut rows: Vec<u32> = rows.iter().copied().filter(|&row| (row as usize) < data.len()).collect();
     rows.sort_unstable();
     rows.dedup();
@@ -109,12 +104,7 @@ pub fn diagnose(
 }
 
 /// Diagnosis of each station by itself, with no assumption on their frames.
-fn station_by_station(
-    robot: &Robot,
-    data: &Dataset,
-    rows: &[u32],
-    options: &DiagnosisOptions<'_>,
-) -> Vec<Diagnosis> {
+fn station_by_station(robot: &Robot, data: &Dataset, rows: &[u32], options: &DiagnosisOptions<'_>) -> Vec<Diagnosis> {
     let alone = data.without_stations();
     let mut found: Vec<Diagnosis> = Vec::new();
     for station in 0..data.station_count() {
@@ -134,12 +124,7 @@ fn station_by_station(
 }
 
 /// Mistake of some rows, apart from repeated rows.
-fn of_rows(
-    fitter: &Fitter<'_>,
-    data: &Dataset,
-    rows: &[u32],
-    options: &DiagnosisOptions<'_>,
-) -> Option<Diagnosis> {
+fn of_rows(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32], options: &DiagnosisOptions<'_>) -> Option<Diagnosis> {
     let whole = take_rows(data, &sample_rows(rows, WHOLE));
     let of_lengths = || {
         if !fitter.is_constrained() {
@@ -161,8 +146,7 @@ fn of_rows(
         Some(few) => few.fitter.judge(&subsample(&few.data)),
         None => fitter.judge(&sample_of(data, rows)),
     };
-    let placed =
-        many.as_ref().map_or_else(|| estimate.clone(), |few| few.place_others(fitter, &all, &estimate));
+    let placed = many.as_ref().map_or_else(|| estimate.clone(), |few| few.place_others(fitter, &all, &estimate));
     if fitter.is_sound(&whole, &placed) {
         return targets::names(fitter, data, &placed).or_else(of_lengths);
     }

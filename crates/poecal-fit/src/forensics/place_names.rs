@@ -86,12 +86,10 @@ pub(crate) fn known_length(fitter: &Fitter<'_>, data: &Dataset, all: &Dataset) -
         (a - b).norm()
     };
     let off_m = |known: &KnownLength| (found_m(known) - known.length_m).abs();
-    let is_seen = |known: &&KnownLength| {
-        known.stations.iter().all(|&at| !without.seen_from(at, &without.all_rows()).is_empty())
-    };
+    let is_seen =
+        |known: &&KnownLength| known.stations.iter().all(|&at| !without.seen_from(at, &without.all_rows()).is_empty());
     let is_other = |known: &&KnownLength| {
-        off_m(known) > OTHER_SHARE * known.length_m.max(found_m(known))
-            && off_m(known) > OTHER_ERRORS * error_m
+        off_m(known) > OTHER_SHARE * known.length_m.max(found_m(known)) && off_m(known) > OTHER_ERRORS * error_m
     };
     let others = data.lengths.iter().filter(is_seen).filter(is_other);
     let worst = others.max_by(|a, b| off_m(a).total_cmp(&off_m(b)))?;

@@ -52,11 +52,7 @@ pub(crate) fn diagnose(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Rep
     let groups = repeats.iter().flat_map(|group| group.chunk_by(same));
     Repeats {
         repeated: repetition(data, &repeated),
-        unnamed: if contradicting.is_empty() {
-            None
-        } else {
-            unnamed_targets::diagnose(fitter, data, groups)
-        },
+        unnamed: if contradicting.is_empty() { None } else { unnamed_targets::diagnose(fitter, data, groups) },
         contradicting: contradiction(data, &contradicting, furthest_m * 1e3),
     }
 }

@@ -16,11 +16,7 @@ const SAME: f64 = 0.02;
 const WHOLE: f64 = 100.0;
 
 /// Factors that fit best, if some are gross.
-pub(crate) fn joint_scales(
-    fitter: &Fitter<'_>,
-    columns: &ReadingColumns,
-    data: &Dataset,
-) -> Option<MistakeHypothesis> {
+pub(crate) fn joint_scales(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &Dataset) -> Option<MistakeHypothesis> {
     let count = columns.names.len();
     let own = |column: usize| columns.only_joint(fitter.robot, column);
     // Per cent of the range, read as degrees or as radians.
@@ -45,8 +41,7 @@ pub(crate) fn joint_scales(
     });
     let (_, mut factors) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let is_of = |range: &Vec<f64>| {
-        range.iter().any(|it| *it != 1.0)
-            && factors.iter().zip(range).all(|(it, of)| (it / of - 1.0).abs() < SAME)
+        range.iter().any(|it| *it != 1.0) && factors.iter().zip(range).all(|(it, of)| (it / of - 1.0).abs() < SAME)
     };
     let per_cent = [degrees, radians].into_iter().find(is_of);
     let is_per_cent = per_cent.is_some();
@@ -61,13 +56,8 @@ pub(crate) fn joint_scales(
 
 /// Hypothesis of some factors; `None` if each is near 1.
 fn describe(columns: &ReadingColumns, factors: Vec<f64>, is_per_cent: bool) -> Option<MistakeHypothesis> {
-    let off: Vec<(&str, f64)> = columns
-        .names
-        .iter()
-        .map(String::as_str)
-        .zip(factors.iter().copied())
-        .filter(|it| it.1 != 1.0)
-        .collect();
+    let off: Vec<(&str, f64)> =
+        columns.names.iter().map(String::as_str).zip(factors.iter().copied()).filter(|it| it.1 != 1.0).collect();
     if off.is_empty() {
         return None;
     }

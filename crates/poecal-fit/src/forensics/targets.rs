@@ -26,8 +26,7 @@ pub(crate) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Op
     let known = |target: usize| data.targets.get(target)?.as_ref().filter(|name| of_model.contains(name));
     let nominal = |target: usize| fitter.start.base_from_target.get(target).map(|pose| pose.translation);
     let place = |target: usize| found.base_from_target.get(target).map(|pose| pose.translation);
-    let moved =
-        farthest_targets(data.targets.len(), |target| Some((nominal(target)? - place(target)?).norm()));
+    let moved = farthest_targets(data.targets.len(), |target| Some((nominal(target)? - place(target)?).norm()));
     for (k, &b) in moved.iter().enumerate() {
         for &a in moved.iter().take(k) {
             let (Some(first), Some(second)) = (known(a), known(b)) else { continue };
@@ -85,8 +84,7 @@ pub(crate) fn rows(
         Some(found)
     });
     let best = found.min_by(|a, b| a.error_m.total_cmp(&b.error_m))?;
-    let name =
-        |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
+    let name = |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
     Some(best.diagnosis(data, rows, name))
 }
 
@@ -115,9 +113,8 @@ fn vote(fitter: &Fitter<'_>, all: &Dataset, estimate: &Estimate, votes: &mut BTr
         let position = all.observations[row].measurement.position();
         seen.extend(position.map(|position| (row, link.act(&position))));
     });
-    let squared = |target: usize, place: &Vector3<f64>| {
-        (estimate.base_from_target[target].translation - place).norm_squared()
-    };
+    let squared =
+        |target: usize, place: &Vector3<f64>| (estimate.base_from_target[target].translation - place).norm_squared();
     let own = |(row, place): &(usize, Vector3<f64>)| squared(all.observations[*row].target, place);
     seen.sort_by(|a, b| own(b).total_cmp(&own(a)));
     seen.truncate(SUSPECTS);

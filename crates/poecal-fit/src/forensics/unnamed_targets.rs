@@ -38,19 +38,12 @@ pub(crate) fn diagnose<'a>(
     let several: Vec<ObservedPositions> =
         groups.map(|rows| places(fitter, data, rows)).filter(|places| places.first.len() > 1).collect();
     let count = most_frequent(several.iter().map(|places| places.first.len()).collect())?;
-    let alike: Vec<&ObservedPositions> =
-        several.iter().filter(|places| places.first.len() == count).collect();
+    let alike: Vec<&ObservedPositions> = several.iter().filter(|places| places.first.len() == count).collect();
     let pairs = count * (count - 1) / 2;
-    let at =
-        |pair: usize| move |places: &&ObservedPositions| places.distances.get(pair).copied().unwrap_or(0.0);
-    let distances: Vec<f64> =
-        (0..pairs).map(|pair| median(alike.iter().map(at(pair))).unwrap_or(0.0)).collect();
+    let at = |pair: usize| move |places: &&ObservedPositions| places.distances.get(pair).copied().unwrap_or(0.0);
+    let distances: Vec<f64> = (0..pairs).map(|pair| median(alike.iter().map(at(pair))).unwrap_or(0.0)).collect();
     let keeps = |places: &&&ObservedPositions| {
-        places
-            .distances
-            .iter()
-            .zip(&distances)
-            .all(|(found, usual)| (found - usual).abs() <= TOLERANCE * usual)
+        places.distances.iter().zip(&distances).all(|(found, usual)| (found - usual).abs() <= TOLERANCE * usual)
     };
     let alike: Vec<&ObservedPositions> = alike.iter().filter(keeps).copied().collect();
     if alike.len() < FEWEST || (alike.len() as f64) < SHARE * several.len() as f64 || is_shift(&alike) {

@@ -18,11 +18,7 @@ const FITTED_STARTS: usize = 3;
 const FITTED_ITERATIONS: usize = 30;
 
 /// Best offset of each joint, if it is gross.
-pub(crate) fn joint_zeros(
-    fitter: &Fitter<'_>,
-    columns: &ReadingColumns,
-    data: &Dataset,
-) -> Vec<MistakeHypothesis> {
+pub(crate) fn joint_zeros(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &Dataset) -> Vec<MistakeHypothesis> {
     let robot = fitter.robot;
     let own = |column: &usize| columns.only_joint(robot, *column).is_some();
     // An unknown device frame absorbs the offset of a joint that is before all others.
@@ -30,9 +26,7 @@ pub(crate) fn joint_zeros(
         let before_all = |row: &Observation| {
             let first = fitter.start.tree.route(Sight::from(row)).first();
             row.from.is_none()
-                && first.is_some_and(|it| {
-                    !it.backward && robot.joints[it.joint].reading.name == columns.names[*column]
-                })
+                && first.is_some_and(|it| !it.backward && robot.joints[it.joint].reading.name == columns.names[*column])
         };
         fitter.device_free && data.observations.iter().all(before_all)
     };
@@ -52,8 +46,7 @@ fn joint_zero(
     let (joint, of) = columns.only_joint(fitter.robot, column)?;
     let multiplier = of.reading.multiplier;
     let turns = columns.kinds.get(column) == Some(&ReadingKind::Angle);
-    let starts: Vec<f64> =
-        if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
+    let starts: Vec<f64> = if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
     let rough = |by: f64| {
         let (estimate, misfit) = fitter.roughly_registered(&RowChange::Add(column, by).apply(data));
         (misfit.total_m, by, estimate)
@@ -62,8 +55,7 @@ fn joint_zero(
     rough.sort_by(|a, b| a.0.total_cmp(&b.0));
     let fitted = rough.into_iter().take(FITTED_STARTS).map(|(_, start, estimate)| {
         let data = RowChange::Add(column, start).apply(data);
-        let (fitted, misfit) =
-            fitter.with_term(&data, &estimate, (&[joint], Term::OFFSET), FITTED_ITERATIONS);
+        let (fitted, misfit) = fitter.with_term(&data, &estimate, (&[joint], Term::OFFSET), FITTED_ITERATIONS);
         (misfit.total_m, start + fitted.coefficient(joint, Term::OFFSET) / multiplier)
     });
     let (_, by) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;

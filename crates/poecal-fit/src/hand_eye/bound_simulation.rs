@@ -46,9 +46,7 @@ pub(crate) fn factors(rows: &[PosePair], fit: &HandEyeFit) -> Factors {
         let Some(again) = HandEyeFit::from_start(&session, truth) else { continue };
         let kept = again.rows(&again.seen_about(&session));
         let Some(spread) = FrameCovariance::from_pairs(&again.noise, &kept, &again.frames) else { continue };
-        for (side, (pose, at)) in
-            [FrameSide::Camera, FrameSide::Target].into_iter().zip(poses.iter().zip([0, 2]))
-        {
+        for (side, (pose, at)) in [FrameSide::Camera, FrameSide::Target].into_iter().zip(poses.iter().zip([0, 2])) {
             let placed = bound_frame(&spread, &again.frames, &again.point, side);
             let (shift, turn) = placed.pose.distance_and_angle(pose);
             ratios[at].push(shift / placed.bound95_m.max(f64::MIN_POSITIVE));
@@ -73,8 +71,7 @@ fn simulate_like(rows: &[PosePair], fit: &HandEyeFit, draw: &mut LinearCongruent
         let exact = fit.frames.predict(&pair.moved);
         let axes = sight_axes(&exact).transpose();
         let (shift, turn) = draw_errors(draw, &sigmas);
-        let seen =
-            Pose::new(rotation::exp(&(axes * turn)) * exact.rotation, exact.translation + axes * shift);
+        let seen = Pose::new(rotation::exp(&(axes * turn)) * exact.rotation, exact.translation + axes * shift);
         PosePair { seen: seen * back, ..*pair }
     };
     rows.iter().map(row).collect()

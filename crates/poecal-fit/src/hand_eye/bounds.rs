@@ -35,13 +35,7 @@ pub struct FrameEstimate {
 impl Default for FrameEstimate {
     fn default() -> Self {
         let none = Vector3::zeros();
-        FrameEstimate {
-            pose: Pose::identity(),
-            bound95_m: 0.0,
-            bound95_rad: 0.0,
-            sigma_m: none,
-            sigma_rad: none,
-        }
+        FrameEstimate { pose: Pose::identity(), bound95_m: 0.0, bound95_rad: 0.0, sigma_m: none, sigma_rad: none }
     }
 }
 
@@ -58,11 +52,7 @@ type FrameJacobian = SMatrix<f64, 6, 12>;
 
 /// The frame of a side, and the linear map from a step of the unknowns to its shift and turn in its parent. The frames are those of
 /// `point` of the target.
-pub(crate) fn frame_of_side(
-    frames: &FramePair,
-    point: &Vector3<f64>,
-    side: FrameSide,
-) -> (Pose, FrameJacobian) {
+pub(crate) fn frame_of_side(frames: &FramePair, point: &Vector3<f64>, side: FrameSide) -> (Pose, FrameJacobian) {
     let mut map = FrameJacobian::zeros();
     match side {
         FrameSide::Camera => {
@@ -96,8 +86,7 @@ pub(crate) fn bound_frame(
         spread.by_part.iter().map(|(part, freedom)| (map_covariance(&map, part), *freedom)).collect();
     let of = |at: usize| {
         let block = |of: &SMatrix<f64, 6, 6>| of.fixed_view::<3, 3>(at, at).into_owned();
-        let by_part: Vec<(f64, f64)> =
-            parts.iter().map(|(part, freedom)| (block(part).trace(), *freedom)).collect();
+        let by_part: Vec<(f64, f64)> = parts.iter().map(|(part, freedom)| (block(part).trace(), *freedom)).collect();
         (length_within(&block(&all), &by_part), block(&all).diagonal().map(|it| it.max(0.0).sqrt()))
     };
     let ((bound95_m, sigma_m), (bound95_rad, sigma_rad)) = (of(0), of(3));

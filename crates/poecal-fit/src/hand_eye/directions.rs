@@ -14,17 +14,11 @@ use poecal_numerics::distributions::median;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// Pairs of two lists, read in these directions.
-pub(crate) fn pairs(
-    flange: &[Pose],
-    target: &[Pose],
-    camera: CameraMounting,
-    by: &Directions,
-) -> Vec<PosePair> {
+pub(crate) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraMounting, by: &Directions) -> Vec<PosePair> {
     let inverts = by.flange_inverted != (camera == CameraMounting::InHand);
     let turned = |pose: &Pose, inverts: bool| if inverts { pose.inverse() } else { *pose };
     let both = flange.iter().zip(target);
-    both.map(|(arm, seen)| PosePair { moved: turned(arm, inverts), seen: turned(seen, by.target_inverted) })
-        .collect()
+    both.map(|(arm, seen)| PosePair { moved: turned(arm, inverts), seen: turned(seen, by.target_inverted) }).collect()
 }
 
 /// Errors below which nothing is compared, metres and radians.

@@ -33,9 +33,7 @@ fn session(seed: u64) -> SimulatedEnds {
     let stays = Vector3::new(away * around.cos(), away * around.sin(), height);
     let mut found = SimulatedEnds { camera, on_flange, flange: Vec::new(), target: Vec::new() };
     let in_base = match camera {
-        CameraMounting::InHand => {
-            Pose::new(rotation::exp(&draw.vector(0.3)) * rotation::about(0, side), stays)
-        }
+        CameraMounting::InHand => Pose::new(rotation::exp(&draw.vector(0.3)) * rotation::about(0, side), stays),
         // The camera looks at the middle of the arm's range.
         CameraMounting::Beside => {
             let middle = Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
@@ -55,17 +53,14 @@ fn session(seed: u64) -> SimulatedEnds {
                 (seen, in_base * seen.inverse() * on_flange.inverse())
             }
             CameraMounting::Beside => {
-                let middle =
-                    Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
+                let middle = Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
                 let place = in_base.inverse().act(&(middle + draw.vector(0.15 * reach)));
                 let seen = Pose::new(turn * rotation::about(0, side), place);
                 (seen, in_base * seen * on_flange.inverse())
             }
         };
         let distance = base_from_flange.translation.norm();
-        if !(0.2 * reach..reach).contains(&distance)
-            || seen.translation.xy().norm() > 0.8 * seen.translation.z
-        {
+        if !(0.2 * reach..reach).contains(&distance) || seen.translation.xy().norm() > 0.8 * seen.translation.z {
             continue;
         }
         let shift = draw.vector(noise * seen.translation.norm());
@@ -103,8 +98,7 @@ impl SimulatedEnds {
             Ok(found) => {
                 let (shift, turn) = found.on_flange.pose.distance_and_angle(&self.on_flange);
                 let is_right = camera == self.camera && shift < 0.1 * self.reach() && turn < 0.2;
-                let said =
-                    found.findings.iter().map(|it| it.statement.clone()).collect::<Vec<_>>().join("; ");
+                let said = found.findings.iter().map(|it| it.statement.clone()).collect::<Vec<_>>().join("; ");
                 if inverted && is_right && flange.is_none() {
                     assert!(found.findings.iter().any(|it| it.kind == FindingKind::Inverted), "{said}");
                 }
@@ -169,10 +163,7 @@ fn inverted_poses_are_inverted_back_or_refused() {
             // Two statements are wrong, and the poses fit: the positions of both frames reveal it.
             let (end, said) = session.end_session(session.other_camera(), true, known);
             assert!(end == End::Refused, "{seed} {:?}: {said}", session.camera);
-            assert!(
-                said.contains(&format!("--camera {} --flange flange-from-base", session.camera.word())),
-                "{said}"
-            );
+            assert!(said.contains(&format!("--camera {} --flange flange-from-base", session.camera.word())), "{said}");
         }
         println!("{known:?}, inverted: {right} inverted back, {refused} refused");
         // Objects farther from the flange than half of the distance to the base are one in thirty.

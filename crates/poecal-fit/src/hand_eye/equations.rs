@@ -93,8 +93,7 @@ impl FrameEquations {
 
     /// Adds a number with its derivatives and weight.
     pub(crate) fn add(&mut self, row: &[f64; UNKNOWNS], error: f64, weight: f64) {
-        for (i, (gram, gradient)) in self.gram.chunks_exact_mut(UNKNOWNS).zip(&mut self.gradient).enumerate()
-        {
+        for (i, (gram, gradient)) in self.gram.chunks_exact_mut(UNKNOWNS).zip(&mut self.gradient).enumerate() {
             *gradient += weight * row[i] * error;
             for (g, other) in gram.iter_mut().zip(row) {
                 *g += weight * row[i] * other;
@@ -129,11 +128,7 @@ const STEPS: usize = 30;
 const SMALL: f64 = 1e-13;
 
 /// Frames that fit rows best by the weights of their numbers (Gauss-Newton). `None` if the rows do not determine them.
-pub(crate) fn minimize_frames(
-    pairs: &[PosePair],
-    start: FramePair,
-    weights: &[f64; NUMBERS],
-) -> Option<FramePair> {
+pub(crate) fn minimize_frames(pairs: &[PosePair], start: FramePair, weights: &[f64; NUMBERS]) -> Option<FramePair> {
     let mut frames = start;
     for _ in 0..STEPS {
         let normal = normal(pairs.iter().map(|pair| (pair, *weights)), &frames);
@@ -145,13 +140,7 @@ pub(crate) fn minimize_frames(
             break;
         }
     }
-    frames
-        .outer
-        .translation
-        .iter()
-        .chain(frames.inner.translation.iter())
-        .all(|it| it.is_finite())
-        .then_some(frames)
+    frames.outer.translation.iter().chain(frames.inner.translation.iter()).all(|it| it.is_finite()).then_some(frames)
 }
 
 /// Axis of a rotation times twice the sine of its angle.
@@ -174,9 +163,8 @@ pub(crate) fn in_closed_form(pairs: &[&PosePair]) -> Option<FramePair> {
         }
     }
     let outer = rotation_maximising(&correlation);
-    let inner = mean_rotation(
-        pairs.iter().map(|it| it.moved.rotation.transpose() * outer.transpose() * it.seen.rotation),
-    );
+    let inner =
+        mean_rotation(pairs.iter().map(|it| it.moved.rotation.transpose() * outer.transpose() * it.seen.rotation));
     // seen = outer (R t_inner + t_moved) + t_outer, linear in both positions.
     let (mut gram, mut right) = ([0.0; 36], [0.0; 6]);
     for pair in pairs {

@@ -51,13 +51,8 @@ impl HandEyeFit {
     /// The same fit from a start.
     pub(crate) fn from_start(pairs: &[PosePair], frames: FramePair) -> Option<Self> {
         let noise = rough_noise(pairs, &frames);
-        let mut fit = HandEyeFit {
-            frames,
-            noise,
-            kept: vec![true; pairs.len()],
-            point: Vector3::zeros(),
-            slack: SLACK,
-        };
+        let mut fit =
+            HandEyeFit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros(), slack: SLACK };
         fit.choose(pairs);
         fit.settle(pairs, false)?;
         // Two rounds, since the first point is found with the noise of the origin.
@@ -258,11 +253,8 @@ pub(crate) fn start(pairs: &[PosePair], starts: usize) -> Option<FramePair> {
     consider(in_closed_form(&all));
     let mut draw = LinearCongruential::new(1);
     for _ in 0..if pairs.len() > POSES_OF_START { starts } else { 0 } {
-        let few: Vec<&PosePair> = draw
-            .distinct_numbers(POSES_OF_START, pairs.len())
-            .into_iter()
-            .filter_map(|k| pairs.get(k))
-            .collect();
+        let few: Vec<&PosePair> =
+            draw.distinct_numbers(POSES_OF_START, pairs.len()).into_iter().filter_map(|k| pairs.get(k)).collect();
         consider(in_closed_form(&few));
     }
     best.map(|(_, frames)| frames)

@@ -111,11 +111,7 @@ pub(crate) type LensFit = (HandEyeFit, Vec<(usize, PosePair)>);
 pub(crate) type FrameFitter<'a> = dyn Fn(&[Pose], Option<&HandEyeFit>) -> Option<LensFit> + 'a;
 
 /// Refits frames and lens together, from poses of the target by the lens of the pictures alone.
-pub(crate) fn refit_with_lens(
-    lens: &UnknownLens,
-    target: &[Pose],
-    fitted: &FrameFitter<'_>,
-) -> Option<FitWithLens> {
+pub(crate) fn refit_with_lens(lens: &UnknownLens, target: &[Pose], fitted: &FrameFitter<'_>) -> Option<FitWithLens> {
     let UnknownLens { search, state: alone } = lens;
     let chosen = lens.choose_poses(target);
     let starts: Vec<Pose> = chosen.iter().map(|it| it.0).collect();
@@ -150,9 +146,8 @@ pub(crate) fn refit_with_lens(
     let larger = (freedom / (freedom - taken).max(0.5 * freedom)).max(1.0);
     let information = &state.information + &normal.of_arm / larger;
     let of_lens = inverse(&information)? * (apart * apart);
-    let deviations = |covariance: &DMatrix<f64>| -> Vec<f64> {
-        covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect()
-    };
+    let deviations =
+        |covariance: &DMatrix<f64>| -> Vec<f64> { covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect() };
     let covariance = &normal.follow * &of_lens * normal.follow.transpose();
     let numbers = |state: &LensState, covariance: &DMatrix<f64>| -> Vec<PictureNumber> {
         let all = search.numbers(state, &deviations(covariance));
@@ -167,11 +162,7 @@ pub(crate) fn refit_with_lens(
     };
     let freedom = if apart > 1.0 { (state.step.len() as f64).min(alone.freedom) } else { alone.freedom };
     let covariance = covariance.transpose().as_slice().to_vec();
-    Some(FitWithLens {
-        target: along(&state),
-        fit,
-        joint: Some(LensCoupling { found, covariance, freedom, larger }),
-    })
+    Some(FitWithLens { target: along(&state), fit, joint: Some(LensCoupling { found, covariance, freedom, larger }) })
 }
 
 /// Normal equations of the lens, by pictures and arm, at the best frames.

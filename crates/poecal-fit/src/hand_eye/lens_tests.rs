@@ -71,10 +71,8 @@ fn session(seed: u64, views: Views) -> SimulatedLens {
         let tilt = draw_between(&mut draw, 0.0, views.tilt);
         let turn = rotation::exp(&(Vector3::new(about.cos(), about.sin(), 0.0) * tilt))
             * rotation::about(2, draw_between(&mut draw, -1.5, 1.5));
-        let place = Vector2::new(
-            draw_between(&mut draw, 0.2, 0.8) * size[0],
-            draw_between(&mut draw, 0.2, 0.8) * size[1],
-        );
+        let place =
+            Vector2::new(draw_between(&mut draw, 0.2, 0.8) * size[0], draw_between(&mut draw, 0.2, 0.8) * size[1]);
         let ray = Vector3::new((place.x - centre[0]) / focal, (place.y - centre[1]) / focal, 1.0);
         let depth = far * (1.0 + views.deep * draw_between(&mut draw, -1.0, 1.0));
         let seen = Pose::new(turn, ray * depth - turn * middle);
@@ -82,8 +80,7 @@ fn session(seed: u64, views: Views) -> SimulatedLens {
             .points
             .iter()
             .map(|it| {
-                lens.pixel(&seen.act(it))
-                    .filter(|it| it.x > 0.0 && it.y > 0.0 && it.x < size[0] && it.y < size[1])
+                lens.pixel(&seen.act(it)).filter(|it| it.x > 0.0 && it.y > 0.0 && it.x < size[0] && it.y < size[1])
             })
             .collect();
         let Some(pixels) = pixels else { continue };
@@ -99,10 +96,7 @@ fn session(seed: u64, views: Views) -> SimulatedLens {
         // The arm's error is about the mounted object, the pictures' error about the camera.
         let error = Pose::new(rotation::exp(&draw.vector(arm.1)), draw.vector(arm.0));
         found.flange.push(base_from_flange * on_flange * error * on_flange.inverse());
-        found
-            .pictures
-            .all
-            .push(Picture { row: found.flange.len() as u32 - 1, ..Picture::new(0, 0, None, corners) });
+        found.pictures.all.push(Picture { row: found.flange.len() as u32 - 1, ..Picture::new(0, 0, None, corners) });
     }
     assert_eq!(found.flange.len(), views.count, "session {seed}");
     found.pictures.boards = vec![board];
@@ -120,19 +114,15 @@ impl SimulatedLens {
         };
         let views: Vec<FlatView> = pictures.all.iter().map(view).collect();
         let lens = known.unwrap_or_else(|| guessed_lens(self.lens.size_px.unwrap(), &views).unwrap());
-        pictures.cameras =
-            vec![Camera { is_guessed: known.is_none(), ..Camera::new("camera".to_owned(), lens) }];
-        let found: Vec<Vec<Pose>> =
-            pictures.all.iter().map(|it| pictures.view(it).unwrap().poses().unwrap()).collect();
+        pictures.cameras = vec![Camera { is_guessed: known.is_none(), ..Camera::new("camera".to_owned(), lens) }];
+        let found: Vec<Vec<Pose>> = pictures.all.iter().map(|it| pictures.view(it).unwrap().poses().unwrap()).collect();
         pictures.all.iter_mut().zip(found).for_each(|(picture, poses)| picture.poses = poses);
     }
 
     fn solve(&self) -> HandEye {
         let target = PoseList::of_pictures(&self.pictures).unwrap();
-        hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::new(self.camera), &|row| {
-            format!("row {row}")
-        })
-        .unwrap()
+        hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::new(self.camera), &|row| format!("row {row}"))
+            .unwrap()
     }
 
     fn truth(&self) -> &Pose {
@@ -149,11 +139,7 @@ fn bounds_hold_with_an_unknown_lens_as_often_as_promised() {
     let (mut inside_m, mut inside_rad, mut focal, mut alone, mut known, mut apart) = (0, 0, 0, 0, 0, 0);
     let mut wider = Vec::new();
     for seed in trials.seeds() {
-        let views = Views {
-            count: 10 + (seed as usize % 4) * 5,
-            tilt: [0.3, 0.5, 0.7][seed as usize % 3],
-            deep: 0.25,
-        };
+        let views = Views { count: 10 + (seed as usize % 4) * 5, tilt: [0.3, 0.5, 0.7][seed as usize % 3], deep: 0.25 };
         let session = session(seed, views);
         let found = session.solve();
         let lens = found.lens.as_ref().unwrap();

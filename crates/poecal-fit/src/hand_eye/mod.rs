@@ -47,8 +47,7 @@ pub use result::hand_eye;
 pub use tip::{TouchedTip, TouchedTool, tool_tip};
 pub use touches::Touches;
 pub use types::{
-    Directions, FlangeTurns, HandEye, HandEyeLevel, HandEyeOptions, HandEyeOutlier, HandEyeRowError,
-    HeldOutErrors,
+    Directions, FlangeTurns, HandEye, HandEyeLevel, HandEyeOptions, HandEyeOutlier, HandEyeRowError, HeldOutErrors,
 };
 pub use unknown_lens::{FoundLens, UnknownLens};
 

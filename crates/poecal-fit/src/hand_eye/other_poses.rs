@@ -11,11 +11,7 @@ use poecal_arm::lie::{Pose, rotation};
 const ROUNDS: usize = 6;
 
 /// The target's poses, for each row the one that agrees with the other rows, and the rows in which that is not the first.
-pub(crate) fn settle_poses(
-    flange: &[Pose],
-    target: &PoseList,
-    options: &HandEyeOptions,
-) -> (Vec<Pose>, Vec<usize>) {
+pub(crate) fn settle_poses(flange: &[Pose], target: &PoseList, options: &HandEyeOptions) -> (Vec<Pose>, Vec<usize>) {
     if target.other_poses.is_empty() {
         return (target.poses.clone(), Vec::new());
     }
@@ -50,8 +46,7 @@ fn by_rounds(
         let mut has_changed = false;
         for (row, pair) in rows.iter().enumerate() {
             let predicted = frames.predict(&pair.moved);
-            let turned =
-                |pose: &&Pose| rotation::log(&(pose.rotation * predicted.rotation.transpose())).norm();
+            let turned = |pose: &&Pose| rotation::log(&(pose.rotation * predicted.rotation.transpose())).norm();
             let first = target.poses.get(row).into_iter();
             let nearest = first
                 .chain(target.other_poses.get(row).into_iter().flatten())

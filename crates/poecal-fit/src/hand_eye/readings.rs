@@ -39,8 +39,7 @@ impl PoseList {
     #[must_use]
     pub fn of_rows(&self, rows: &[usize]) -> Self {
         let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
-        let others =
-            self.others.iter().map(|it| ListReading { advice: it.advice.clone(), poses: of(&it.poses) });
+        let others = self.others.iter().map(|it| ListReading { advice: it.advice.clone(), poses: of(&it.poses) });
         let other_poses = match self.other_poses.is_empty() {
             true => Vec::new(),
             false => rows.iter().filter_map(|&row| self.other_poses.get(row)).cloned().collect(),
@@ -84,8 +83,7 @@ pub(crate) fn refuse_arm_lengths(flange: &[Pose]) -> Result<()> {
 }
 
 fn refuse_lengths(list: &str, poses: &[Pose], nearest: f64) -> Result<()> {
-    let Some(middle) = poecal_numerics::distributions::median(poses.iter().map(|it| it.translation.norm()))
-    else {
+    let Some(middle) = poecal_numerics::distributions::median(poses.iter().map(|it| it.translation.norm())) else {
         return Ok(());
     };
     if middle > FARTHEST {
@@ -154,11 +152,7 @@ pub(crate) fn misreading_error(
 }
 
 /// Error that names another reading of the arm's orientations. By that reading, poses that turn about one axis turn about several, and fit.
-pub(crate) fn misread_angles(
-    flange: &PoseList,
-    target: &PoseList,
-    options: &HandEyeOptions,
-) -> Option<Error> {
+pub(crate) fn misread_angles(flange: &PoseList, target: &PoseList, options: &HandEyeOptions) -> Option<Error> {
     let (as_read, _) = least_score(&flange.poses, &target.poses, options)?;
     let fits = flange.others.iter().filter_map(|reading| {
         let all: Vec<usize> = (0..reading.poses.len()).collect();
@@ -174,19 +168,11 @@ pub(crate) fn misread_angles(
 }
 
 /// Best score over the directions that are allowed, and its median errors.
-pub(crate) fn least_score(
-    flange: &[Pose],
-    target: &[Pose],
-    options: &HandEyeOptions,
-) -> Option<(f64, (f64, f64))> {
+pub(crate) fn least_score(flange: &[Pose], target: &[Pose], options: &HandEyeOptions) -> Option<(f64, (f64, f64))> {
     let of = |flange_inverted: bool| {
-        let directions = Directions {
-            flange_inverted,
-            target_inverted: options.target_inverted.unwrap_or(false),
-            stated: false,
-        };
-        score(&pairs(flange, target, CameraMounting::Beside, &directions))
-            .map(|(score, _, errors)| (score, errors))
+        let directions =
+            Directions { flange_inverted, target_inverted: options.target_inverted.unwrap_or(false), stated: false };
+        score(&pairs(flange, target, CameraMounting::Beside, &directions)).map(|(score, _, errors)| (score, errors))
     };
     [of(false), of(true)].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
 }
@@ -208,11 +194,7 @@ fn orders(count: usize) -> Vec<(Vec<usize>, Vec<usize>, String)> {
         orders.push((end, start, later("later")));
     }
     let advice = "join them by a column of names, as `image`, in both";
-    orders.push((
-        all(),
-        all().into_iter().rev().collect(),
-        format!("the target's poses in reverse order: {advice}"),
-    ));
+    orders.push((all(), all().into_iter().rev().collect(), format!("the target's poses in reverse order: {advice}")));
     for first in [0, 1] {
         let mut sorted = all();
         sorted.sort_by_key(|row| (row + first).to_string());
@@ -238,9 +220,7 @@ fn mirror_poses(poses: &[Pose]) -> Vec<(Vec<Pose>, &'static str)> {
         "an axis mirrored in the poses",
     )];
     for (axis, what) in
-        ["x mirrored in the positions", "y mirrored in the positions", "z mirrored in the positions"]
-            .iter()
-            .enumerate()
+        ["x mirrored in the positions", "y mirrored in the positions", "z mirrored in the positions"].iter().enumerate()
     {
         let by = mirror(axis);
         all.push((poses.iter().map(|it| Pose::new(it.rotation, by * it.translation)).collect(), *what));

@@ -12,8 +12,7 @@ use super::lens::{self, FitWithLens, LensCoupling, LensFit};
 use super::noise::FrameCovariance;
 use super::readings::{PoseList, least_score, misread_angles, misreading_error, refuse_other_lengths};
 use super::types::{
-    Directions, FlangeTurns, HandEye, HandEyeLevel, HandEyeOptions, HandEyeOutlier, HandEyeRowError,
-    HeldOutErrors,
+    Directions, FlangeTurns, HandEye, HandEyeLevel, HandEyeOptions, HandEyeOutlier, HandEyeRowError, HeldOutErrors,
 };
 use super::unknown_lens::FoundLens;
 use super::{CameraMounting, bound_simulation, other_poses, scale, session_motion, verdict};
@@ -87,8 +86,7 @@ pub fn hand_eye(
     };
     let with_lens = match &target.lens {
         Some(lens) => lens::refit_with_lens(lens, &target.poses, &fitted),
-        None => fitted(&target.poses, None)
-            .map(|(fit, _)| FitWithLens::from_known_lens(target.poses.clone(), fit)),
+        None => fitted(&target.poses, None).map(|(fit, _)| FitWithLens::from_known_lens(target.poses.clone(), fit)),
     };
     let Some(FitWithLens { target: poses, fit, joint }) = with_lens else {
         return ErrorKind::Problem.refuse(
@@ -96,8 +94,7 @@ pub fn hand_eye(
         );
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
-    let found =
-        assemble_result(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
+    let found = assemble_result(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
     Ok(found.with_lens_doubt(target.lens_doubt.as_ref()))
 }
 
@@ -224,11 +221,7 @@ fn with_bounds(
     let by = |spread: &FrameCovariance, side: FrameSide| {
         let (by_m, by_rad) = factors.factors_of_side(side);
         let placed = bound_frame(spread, &fit.frames, &fit.point, side);
-        FrameEstimate {
-            bound95_m: by_m * placed.bound95_m,
-            bound95_rad: by_rad * placed.bound95_rad,
-            ..placed
-        }
+        FrameEstimate { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
     };
     let both = |spread: &FrameCovariance| [FrameSide::Camera, FrameSide::Target].map(|side| by(spread, side));
     let Some(LensCoupling { found, covariance, freedom, larger }) = joint else {
@@ -269,9 +262,9 @@ fn once_each(
     let mut counted: Vec<usize> = Vec::new();
     let mut repeated = Vec::new();
     for row in 0..flange.poses.len() {
-        let earlier = counted.iter().find(|&&it| {
-            same(&flange.poses[it], &flange.poses[row]) && same(&target.poses[it], &target.poses[row])
-        });
+        let earlier = counted
+            .iter()
+            .find(|&&it| same(&flange.poses[it], &flange.poses[row]) && same(&target.poses[it], &target.poses[row]));
         match earlier {
             Some(&it) => repeated.push((row, it)),
             None => counted.push(row),
@@ -280,17 +273,12 @@ fn once_each(
     if !repeated.is_empty() {
         let words: Vec<String> =
             repeated.iter().take(4).map(|&(row, it)| format!("{} repeats {}", name(row), name(it))).collect();
-        let more =
-            if repeated.len() > 4 { format!(" and {} more", repeated.len() - 4) } else { String::new() };
+        let more = if repeated.len() > 4 { format!(" and {} more", repeated.len() - 4) } else { String::new() };
         let statement = format!(
             "{}{more}: the same numbers of arm and target count once; measure each pose anew",
             words.join(", ")
         );
-        findings.push(Finding::new(
-            FindingKind::Repeated,
-            statement,
-            repeated.iter().map(|it| it.0).collect(),
-        ));
+        findings.push(Finding::new(FindingKind::Repeated, statement, repeated.iter().map(|it| it.0).collect()));
     }
     counted
 }
@@ -323,15 +311,9 @@ fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
 const SUSPICIOUS: (f64, f64) = (3e-3, 5e-3);
 
 /// The most likely mistake in the poses, if they fit badly as they are.
-fn mistake(
-    flange: &PoseList,
-    target: &PoseList,
-    options: &HandEyeOptions,
-) -> Option<poecal_numerics::error::Error> {
+fn mistake(flange: &PoseList, target: &PoseList, options: &HandEyeOptions) -> Option<poecal_numerics::error::Error> {
     let (score, (shift, turn)) = least_score(&flange.poses, &target.poses, options)?;
-    (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1)
-        .then(|| misreading_error(flange, target, options, score))
-        .flatten()
+    (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1).then(|| misreading_error(flange, target, options, score)).flatten()
 }
 
 /// True if a row is right once its board is turned to the other of the two poses that look alike from afar.
@@ -362,8 +344,7 @@ fn say_outliers(outliers: &[HandEyeOutlier], name: &dyn Fn(usize) -> String, fin
         findings.push(Finding::new(FindingKind::Flipped, statement, flipped));
     }
     if !others.is_empty() {
-        let worst =
-            outliers.iter().filter(|it| !it.is_flipped).max_by(|a, b| a.shift_m.total_cmp(&b.shift_m));
+        let worst = outliers.iter().filter(|it| !it.is_flipped).max_by(|a, b| a.shift_m.total_cmp(&b.shift_m));
         let size = worst.map_or(String::new(), |it| {
             format!(" (up to {:.1} mm and {:.2} deg)", 1e3 * it.shift_m, it.turn_rad.to_degrees())
         });
@@ -397,11 +378,7 @@ fn held_out(rows: &[PosePair], fit: &HandEyeFit) -> Option<HeldOutErrors> {
         }
     }
     let count = kept.len() as f64;
-    Some(HeldOutErrors {
-        rows: kept.len(),
-        rms_m: (squares_m / count).sqrt(),
-        rms_rad: (squares_rad / count).sqrt(),
-    })
+    Some(HeldOutErrors { rows: kept.len(), rms_m: (squares_m / count).sqrt(), rms_rad: (squares_rad / count).sqrt() })
 }
 
 fn root_mean_squares(rows: &[HandEyeRowError]) -> (f64, f64) {

@@ -41,11 +41,7 @@ fn share(rows: &[PosePair], fit: &HandEyeFit) -> Option<(f64, f64)> {
 
 /// Ratio of the camera's lengths to the arm's, if it is significant: from all rows, from those that count, and from whether they fit
 /// together.
-pub(crate) fn length_scale(
-    (rows, kept): (&[PosePair], &[PosePair]),
-    fit: &HandEyeFit,
-    fits: bool,
-) -> Option<f64> {
+pub(crate) fn length_scale((rows, kept): (&[PosePair], &[PosePair]), fit: &HandEyeFit, fits: bool) -> Option<f64> {
     if fits { find_scale(kept, fit) } else { explain_scale(rows, fit) }
 }
 

@@ -38,9 +38,8 @@ pub(crate) fn find_move(pairs: &[PosePair]) -> Option<RelativeMotion> {
     let scores = places.filter_map(|at| Some((score_rows(&pairs[..at])? + score_rows(&pairs[at..])?, at)));
     let (_, at) = scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
     let (first, second) = (HandEyeFit::from_pairs(&pairs[..at])?, HandEyeFit::from_pairs(&pairs[at..])?);
-    let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])].map(|(fit, rows)| {
-        FrameCovariance::from_pairs(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames)
-    });
+    let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])]
+        .map(|(fit, rows)| FrameCovariance::from_pairs(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames));
     let (before, after) = (before?, after?);
     let chance = CHANCE / (count / every) as f64;
     let ratio = |side: FrameSide| {
@@ -61,10 +60,8 @@ pub(crate) fn find_move(pairs: &[PosePair]) -> Option<RelativeMotion> {
 fn score_rows(pairs: &[PosePair]) -> Option<f64> {
     let frames = start(pairs, FEW_STARTS)?;
     let count = pairs.len() as f64;
-    let sums = pairs
-        .iter()
-        .map(|pair| sizes(&errors(pair, &frames)))
-        .fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
+    let sums =
+        pairs.iter().map(|pair| sizes(&errors(pair, &frames))).fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
     Some(count * ((sums.0 / count).max(1e-9).ln() + (sums.1 / count).max(1e-9).ln()))
 }
 

@@ -79,19 +79,14 @@ fn frames_are_within_their_bounds_as_often_as_promised() {
     // Few sessions, since `validation/hand_eye` runs 300: of 40 the share of 95 % is below 80 % once in 4,000.
     for seed in 0..40 {
         let count = [8, 12, 20, 40][seed % 4];
-        let session = session(
-            BOTH[seed / 4 % 2],
-            count,
-            [(2e-4, 2e-3), (3e-5, 2e-4), (1e-3, 8e-3)][seed % 3],
-            seed as u64,
-        );
+        let session =
+            session(BOTH[seed / 4 % 2], count, [(2e-4, 2e-3), (3e-5, 2e-4), (1e-3, 8e-3)][seed % 3], seed as u64);
         let found = session.solve().unwrap();
         let (off_m, off_rad) = found.on_flange.pose.distance_and_angle(&session.on_flange);
         inside_m += usize::from(off_m <= found.on_flange.bound95_m);
         inside_rad += usize::from(off_rad <= found.on_flange.bound95_rad);
         all += 1;
-        lost += found.outliers.len()
-            + found.findings.iter().filter(|it| it.kind != FindingKind::MissingMoves).count();
+        lost += found.outliers.len() + found.findings.iter().filter(|it| it.kind != FindingKind::MissingMoves).count();
         assert_ne!(found.level, HandEyeLevel::DoNotUse, "{:?}", found.reasons);
     }
     println!("{inside_m} and {inside_rad} of {all} inside, {lost} rows lost");
@@ -120,18 +115,14 @@ fn lists_the_other_way_round_are_found() {
             let found = session.read(inverted(&session.flange).into(), session.target.clone().into());
             match found {
                 Ok(found) => {
-                    assert!(
-                        found.directions.flange_inverted && !found.directions.target_inverted,
-                        "{camera:?}"
-                    );
+                    assert!(found.directions.flange_inverted && !found.directions.target_inverted, "{camera:?}");
                     assert!(found.on_flange.pose.distance_and_angle(&session.on_flange).0 < 5e-3);
                 }
                 Err(error) => assert!(error.to_string().contains("--camera"), "{error}"),
             }
             let turned: PoseList = inverted(&session.target).into();
             let stated = HandEyeOptions { target_inverted: Some(true), ..HandEyeOptions::new(camera) };
-            let stated =
-                hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
+            let stated = hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
             match session.read(session.flange.clone().into(), turned) {
                 Ok(found) => assert!(found.directions.target_inverted, "{camera:?}"),
                 // A camera at the other end would see the same, and the board is in front of it in either direction.
@@ -176,8 +167,7 @@ fn mirrored_frames_and_other_units_are_named() {
             assert!(error.contains("millimetres"), "{error}");
             let error = session.refusal(session.flange.clone(), scaled(&session.target, 1e-3));
             assert!(error.contains("metres"), "{error}");
-            let found =
-                session.read(session.flange.clone().into(), scaled(&session.target, 1.05).into()).unwrap();
+            let found = session.read(session.flange.clone().into(), scaled(&session.target, 1.05).into()).unwrap();
             assert_eq!(found.level, HandEyeLevel::DoNotUse);
             assert!(found.reasons[0].contains("longer than the arm's"), "{:?}", found.reasons);
         }
@@ -217,11 +207,7 @@ fn outliers_flips_repeats_and_moves_are_named() {
             session.target[7].rotation = rotation::shortest_arc(&normal, &other) * seen.rotation;
             let found = session.solve().unwrap();
             if normal.cross(&along).norm() > 0.15 {
-                assert!(
-                    found.findings.iter().any(|it| it.kind == FindingKind::Flipped),
-                    "{:?}",
-                    found.findings
-                );
+                assert!(found.findings.iter().any(|it| it.kind == FindingKind::Flipped), "{:?}", found.findings);
             }
             session.target.clone_from(&good);
             (session.flange[9], session.target[9]) = (session.flange[2], session.target[2]);
@@ -243,10 +229,7 @@ fn outliers_flips_repeats_and_moves_are_named() {
             let found = session.solve().unwrap();
             let moved = found.findings.iter().find(|it| it.kind == FindingKind::Moved);
             assert!(moved.is_some_and(|it| it.statement.contains("before row 13")), "{:?}", found.findings);
-            assert!(
-                found.on_flange.pose.distance_and_angle(&session.on_flange).0
-                    < found.on_flange.bound95_m * 2.0
-            );
+            assert!(found.on_flange.pose.distance_and_angle(&session.on_flange).0 < found.on_flange.bound95_m * 2.0);
         }
     }
 }

@@ -118,10 +118,8 @@ fn untilted_error(weak: &Vector3<f64>, spread: f64) -> Error {
 /// Another reading of the poses that fits evidently better, with as many touches, which determine as much of the tip.
 fn other_reading(touches: &Touches, layout: &TouchLayout, found: &TouchFit) -> Option<Error> {
     let inverted: Vec<Pose> = touches.flange.poses.iter().map(Pose::inverse).collect();
-    let inverted = (
-        "poses inverted (flange from base): export base from flange, the pose of the flange in the base",
-        inverted,
-    );
+    let inverted =
+        ("poses inverted (flange from base): export base from flange, the pose of the flange in the base", inverted);
     let counted = |kept: &[bool]| kept.iter().filter(|it| **it).count();
     let others = touches.flange.others.iter().map(|it| (it.advice.as_str(), it.poses.clone()));
     let fits = others.chain([inverted]).filter_map(|(advice, poses)| {
@@ -148,15 +146,8 @@ fn largest_turn(poses: &[Pose]) -> f64 {
 }
 
 /// Tool of a fit, not judged yet.
-fn assemble_tool(
-    poses: &[Pose],
-    layout: &TouchLayout,
-    fit: &TouchFit,
-    covariance: &DMatrix<f64>,
-) -> TouchedTool {
-    let at = |tip: usize| {
-        Vector3::new(fit.unknowns[3 * tip], fit.unknowns[3 * tip + 1], fit.unknowns[3 * tip + 2])
-    };
+fn assemble_tool(poses: &[Pose], layout: &TouchLayout, fit: &TouchFit, covariance: &DMatrix<f64>) -> TouchedTool {
+    let at = |tip: usize| Vector3::new(fit.unknowns[3 * tip], fit.unknowns[3 * tip + 1], fit.unknowns[3 * tip + 2]);
     let block = |i: usize, j: usize| covariance.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
     let bound = |covariance: &Matrix3<f64>| length_within(covariance, &[(covariance.trace(), fit.freedom)]);
     let tips: Vec<TouchedTip> = layout
@@ -181,8 +172,7 @@ fn assemble_tool(
         let between = block(0, 0) + block(1, 1) - block(0, 1) - block(1, 0);
         (direction, (bound(&(across * between * across)) / along.norm().max(1e-9)).atan())
     });
-    let turn = axis
-        .map_or_else(Matrix3::identity, |(direction, _)| rotation::shortest_arc(&Vector3::z(), &direction));
+    let turn = axis.map_or_else(Matrix3::identity, |(direction, _)| rotation::shortest_arc(&Vector3::z(), &direction));
     let misses = layout.misses(poses, &fit.unknowns);
     let rows: Vec<HandEyeRowError> = misses
         .iter()
@@ -227,12 +217,7 @@ impl TouchedTip {
 }
 
 /// Sets level and reasons. The arguments are the direction that tilted least, its tilt, and the largest rotation.
-fn judge(
-    tool: &mut TouchedTool,
-    (weak, spread): (Vector3<f64>, f64),
-    turned: f64,
-    name: &dyn Fn(usize) -> String,
-) {
+fn judge(tool: &mut TouchedTool, (weak, spread): (Vector3<f64>, f64), turned: f64, name: &dyn Fn(usize) -> String) {
     let (fitted, outliers) = (tool.rows.len() - tool.outliers.len(), tool.outliers.len());
     let (mut against, mut reasons) = (Vec::new(), Vec::new());
     if tool.rms_m > USELESS {

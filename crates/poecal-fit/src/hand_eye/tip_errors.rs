@@ -46,8 +46,7 @@ pub(crate) fn covariance(
     kinds.extend(SHARES.map(TipErrorPattern::Turned));
     kinds.extend(SHARES.map(TipErrorPattern::Tilted));
     let touches = CountedTouches { poses, layout, kept: &kept };
-    let found: Option<Vec<TipErrorFit>> =
-        kinds.iter().map(|kind| touches.fit_correlated(*kind, about)).collect();
+    let found: Option<Vec<TipErrorFit>> = kinds.iter().map(|kind| touches.fit_correlated(*kind, about)).collect();
     let found = found?;
     let most = found.iter().map(|it| it.likelihood).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = found.iter().map(|it| (it.likelihood - most).exp()).collect();

@@ -21,10 +21,8 @@ fn perturb_arm(nominal: &Robot, rotation_rad: f64, position_m: f64, draw: &mut L
         let at = Pose::from_translation(joint.frame.translation);
         let error = Pose::new(rotation::exp(&draw.vector(rotation_rad)), draw.vector(position_m));
         motion = motion * at * error * at.inverse();
-        screws.push(Screw::revolute(
-            &(motion.rotation * joint.screw.direction()),
-            &motion.act(&joint.frame.translation),
-        ));
+        screws
+            .push(Screw::revolute(&(motion.rotation * joint.screw.direction()), &motion.act(&joint.frame.translation)));
     }
     let mut actual = nominal.with_screws(&screws);
     actual.home = motion * nominal.home;
@@ -44,23 +42,13 @@ fn shown_pose(nominal: &Robot, actual: &Robot, readings: &[f64], noise: Vector3<
 fn draw_tilted(draw: &mut LinearCongruential) -> Vec<f64> {
     let middle = [0.1, 0.5, -0.4, 0.0, 0.9, 0.0];
     let spread = [0.25, 0.12, 0.12, 0.6, 0.5, 2.4];
-    middle
-        .iter()
-        .zip(spread)
-        .map(|(middle, spread)| middle + spread * (2.0 * draw.uniform_number() - 1.0))
-        .collect()
+    middle.iter().zip(spread).map(|(middle, spread)| middle + spread * (2.0 * draw.uniform_number() - 1.0)).collect()
 }
 
 /// Three touches that turn the last joint alone, and two that are tilted.
 fn upright_touches() -> [Vec<f64>; 5] {
     let turned = |last: f64| vec![0.1, 0.5, -0.4, 0.0, 0.9, last];
-    [
-        turned(0.0),
-        turned(1.6),
-        turned(3.0),
-        vec![0.1, 0.5, -0.4, 0.5, 1.4, 0.4],
-        vec![0.1, 0.5, -0.4, -0.5, 0.4, -0.7],
-    ]
+    [turned(0.0), turned(1.6), turned(3.0), vec![0.1, 0.5, -0.4, 0.5, 1.4, 0.4], vec![0.1, 0.5, -0.4, -0.5, 0.4, -0.7]]
 }
 
 fn solve_tip(poses: Vec<Pose>) -> Result<TouchedTool> {
@@ -91,12 +79,7 @@ fn tips_on_arms_with_errors_are_within_their_bounds_as_often_as_promised() {
         inside += usize::from(miss_m(&found) <= bound);
         good += usize::from(found.level == HandEyeLevel::Good);
         bounds.push(1e3 * bound);
-        assert!(
-            found.level != HandEyeLevel::DoNotUse && bound < 0.02,
-            "{seed}: {} {:?}",
-            1e3 * bound,
-            found.reasons
-        );
+        assert!(found.level != HandEyeLevel::DoNotUse && bound < 0.02, "{seed}: {} {:?}", 1e3 * bound, found.reasons);
     }
     bounds.sort_by(f64::total_cmp);
     let share = inside as f64 / sessions.count as f64;

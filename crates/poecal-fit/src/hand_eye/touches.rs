@@ -95,9 +95,12 @@ impl TouchLayout {
         for ((pose, (tip, point)), weight) in poses.iter().zip(&self.rows).zip(weights) {
             let (tip, point) = (3 * tip, 3 * (self.tips.len() + point));
             for row in 0..3 {
-                let entries: [(usize, f64); 4] = std::array::from_fn(|k| {
-                    if k < 3 { (tip + k, pose.rotation[(row, k)]) } else { (point + row, -1.0) }
-                });
+                let entries: [(usize, f64); 4] =
+                    std::array::from_fn(
+                        |k| {
+                            if k < 3 { (tip + k, pose.rotation[(row, k)]) } else { (point + row, -1.0) }
+                        },
+                    );
                 for (i, a) in entries {
                     right[i] -= weight * a * pose.translation[row];
                     for (j, b) in entries {
@@ -145,8 +148,7 @@ impl TouchLayout {
             weights = next.iter().map(|it| f64::from(u8::from(*it))).collect();
             unknowns = self.solve_weighted(poses, &weights)?;
             let misses = self.misses(poses, &unknowns);
-            let squares: f64 =
-                misses.iter().zip(&weights).map(|(miss, weight)| weight * miss.norm_squared()).sum();
+            let squares: f64 = misses.iter().zip(&weights).map(|(miss, weight)| weight * miss.norm_squared()).sum();
             freedom = 3.0 * weights.iter().sum::<f64>() - self.unknowns() as f64;
             sigma_m = (squares / freedom.max(1.0)).sqrt().max(1e-10);
             let is_done = next == kept;
@@ -161,9 +163,7 @@ impl TouchLayout {
     /// True if the remaining rows determine all that all touches do, also without any one of them. Rows that alone determine a direction
     /// contradict nothing, and are never left out.
     fn are_enough(&self, poses: &[Pose], kept: &[bool], tilted: f64) -> bool {
-        let has = |of: &dyn Fn(&(usize, usize)) -> bool| {
-            self.rows.iter().zip(kept).any(|(row, kept)| *kept && of(row))
-        };
+        let has = |of: &dyn Fn(&(usize, usize)) -> bool| self.rows.iter().zip(kept).any(|(row, kept)| *kept && of(row));
         let is_tilted = |kept: &[bool], share: f64| self.least_tilted(poses, kept).1 >= share * tilted;
         let without = |row: usize| {
             let others: Vec<bool> = kept.iter().enumerate().map(|(at, kept)| *kept && at != row).collect();
@@ -182,9 +182,7 @@ impl TouchLayout {
     pub(crate) fn least_tilted(&self, poses: &[Pose], kept: &[bool]) -> (Vector3<f64>, f64) {
         let count = kept.iter().filter(|it| **it).count();
         let mut upper = [0.0; 9];
-        for (tip, point) in
-            (0..self.tips.len()).flat_map(|tip| (0..self.points.len()).map(move |point| (tip, point)))
-        {
+        for (tip, point) in (0..self.tips.len()).flat_map(|tip| (0..self.points.len()).map(move |point| (tip, point))) {
             let rows = poses.iter().zip(&self.rows).zip(kept);
             let own: Vec<&Pose> =
                 rows.filter(|((_, row), kept)| **kept && **row == (tip, point)).map(|it| it.0.0).collect();
@@ -206,12 +204,8 @@ impl TouchFit {
     /// Root mean square distance of the rows that count.
     pub(crate) fn rms(&self, poses: &[Pose], layout: &TouchLayout) -> f64 {
         let misses = layout.misses(poses, &self.unknowns);
-        let kept: Vec<f64> = misses
-            .iter()
-            .zip(&self.kept)
-            .filter(|(_, kept)| **kept)
-            .map(|(it, _)| it.norm_squared())
-            .collect();
+        let kept: Vec<f64> =
+            misses.iter().zip(&self.kept).filter(|(_, kept)| **kept).map(|(it, _)| it.norm_squared()).collect();
         (kept.iter().sum::<f64>() / kept.len().max(1) as f64).sqrt()
     }
 }

@@ -32,9 +32,8 @@ impl UnknownLens {
         let of = |(row, chosen): (usize, &Pose)| {
             let Some(picture) = pictures.all.get(row) else { return (*chosen, Pose::identity()) };
             let half_turn = pictures.boards.get(picture.board).and_then(|board| board.half_turn());
-            let turned = half_turn.and_then(|turn| {
-                picture.poses.iter().find(|it| **it * turn == *chosen).map(|it| (*it, turn))
-            });
+            let turned =
+                half_turn.and_then(|turn| picture.poses.iter().find(|it| **it * turn == *chosen).map(|it| (*it, turn)));
             turned.unwrap_or((*chosen, Pose::identity()))
         };
         target.iter().enumerate().map(of).collect()

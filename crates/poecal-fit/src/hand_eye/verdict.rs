@@ -48,9 +48,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     }
     let missing = missing_moves(result);
     weak.extend(missing.iter().cloned());
-    result
-        .findings
-        .extend(missing.into_iter().map(|it| Finding::new(FindingKind::MissingMoves, it, Vec::new())));
+    result.findings.extend(missing.into_iter().map(|it| Finding::new(FindingKind::MissingMoves, it, Vec::new())));
     if result.findings.iter().any(|it| it.kind == FindingKind::Moved) {
         weak.push("something moved during the session".to_owned());
     }

@@ -31,8 +31,7 @@ pub fn refuse_wrong_boards(data: &Dataset) -> Result<()> {
                 "with its columns and rows exchanged they are off by {found:.2} px: exchange the two numbers of its squares"
             ),
             None => {
-                "check the names or the order of the corners, the points of the board, and the focal length"
-                    .to_owned()
+                "check the names or the order of the corners, the points of the board, and the focal length".to_owned()
             }
         };
         let message = format!(

@@ -68,12 +68,7 @@ impl<'a> JointWatch<'a> {
 
     /// Subtracts whole turns from readings of a row that are inside the limits without them, and adds them to `turns`. An example is 0 to 360° of
     /// a joint from -180 to 180°. `place` is that of a reading: its line and column.
-    pub fn unwind(
-        &mut self,
-        place: &dyn Fn(usize) -> (usize, usize),
-        readings: &mut [Option<f64>],
-        turns: &mut [f64],
-    ) {
+    pub fn unwind(&mut self, place: &dyn Fn(usize) -> (usize, usize), readings: &mut [Option<f64>], turns: &mut [f64]) {
         for one in &mut self.joints {
             let Some(Some(reading)) = readings.get_mut(one.reading) else { continue };
             one.raw = [one.raw[0].min(*reading), one.raw[1].max(*reading)];
@@ -147,10 +142,8 @@ impl<'a> JointWatch<'a> {
     /// Total motion of prismatic joints without limits (metres), by the ranges of the columns.
     #[must_use]
     pub fn unlimited_slides_m(&self, columns: &[ReadColumn<'_>]) -> f64 {
-        let slides = self
-            .joints
-            .iter()
-            .filter(|one| one.joint.kind == JointKind::Prismatic && one.joint.limits.is_none());
+        let slides =
+            self.joints.iter().filter(|one| one.joint.kind == JointKind::Prismatic && one.joint.limits.is_none());
         slides
             .filter_map(|one| {
                 let (lowest, highest) = columns.get(one.reading)?.range?;
@@ -179,8 +172,7 @@ impl JointUnitCheck<'_> {
             return None;
         }
         let middle = 0.5 * (limits.lower + limits.upper);
-        let turns =
-            ((self.joint.reading.value(reading) - middle) / TAU).round() * self.joint.reading.multiplier;
+        let turns = ((self.joint.reading.value(reading) - middle) / TAU).round() * self.joint.reading.multiplier;
         (turns != 0.0 && self.allows(reading - turns * TAU, ROUNDING)).then_some(turns)
     }
 
@@ -207,11 +199,7 @@ impl JointUnitCheck<'_> {
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         let [lowest, highest] = self.raw;
         let is_of_turns = highest - lowest <= MOST_TURNS.max(span) * (1.0 + MORE);
-        if self.turned.count == 0 || is_rare || is_of_turns {
-            None
-        } else {
-            self.smaller_unit(input, self.raw)
-        }
+        if self.turned.count == 0 || is_rare || is_of_turns { None } else { self.smaller_unit(input, self.raw) }
     }
 
     /// Smaller unit in which readings are inside the limits.
@@ -247,9 +235,7 @@ impl JointUnitCheck<'_> {
                     Unit::Metre => (5.0, 5.0),
                     Unit::Radian | Unit::One | Unit::Second => (std::f64::consts::TAU, 0.5),
                 };
-                extremes
-                    .into_iter()
-                    .any(|reading| reading.abs() > large && !self.allows(reading, spans * span))
+                extremes.into_iter().any(|reading| reading.abs() > large && !self.allows(reading, spans * span))
             }
             None => unit_from == UnitSource::Si,
         }

@@ -54,25 +54,16 @@ pub fn of_positions(
         .map(|(position, row)| (position - middle, row.source.line))
         .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()))?;
     let spread = apart.norm();
-    if spread <= REACHES * reach
-        || spread > 1e3 * REACHES * reach
-        || (far as f64) < SHARE * positions.len() as f64
-    {
+    if spread <= REACHES * reach || spread > 1e3 * REACHES * reach || (far as f64) < SHARE * positions.len() as f64 {
         return None;
     }
-    let far_of =
-        |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
+    let far_of = |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
     let message = positions_message(columns, [0, 1, 2].map(far_of), apart, reach)?;
     Some(InputDoubt::new(DoubtLocation::Line(line as usize), message))
 }
 
 /// Message about positions far from their middle, by the largest distance in each coordinate; `None` without a smaller unit.
-fn positions_message(
-    columns: [ReadColumn<'_>; 3],
-    far: [f64; 3],
-    apart: Vector3<f64>,
-    reach: f64,
-) -> Option<String> {
+fn positions_message(columns: [ReadColumn<'_>; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
     // The columns in a wrong unit: a header may state the unit of one of three wrongly. A column without
     // motion reveals nothing.
     let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
@@ -98,8 +89,7 @@ fn positions_message(
             headers.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(" and ")
         ),
     };
-    let others: Vec<&str> =
-        (0..3).filter(|axis| !own.contains(axis)).map(|axis| columns[axis].name).collect();
+    let others: Vec<&str> = (0..3).filter(|axis| !own.contains(axis)).map(|axis| columns[axis].name).collect();
     let others = match others.as_slice() {
         [] => String::new(),
         [one] => format!(", beside `{one}`, which it can reach"),

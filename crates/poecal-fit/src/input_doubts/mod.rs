@@ -75,9 +75,7 @@ impl InputDoubt {
 fn state_it(unit_from: UnitSource, symbol: &str) -> String {
     match unit_from {
         UnitSource::Si | UnitSource::Maker => format!("state --units {symbol}"),
-        UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => {
-            "the unit in the mapping".to_owned()
-        }
+        UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => "the unit in the mapping".to_owned(),
     }
 }
 

@@ -44,11 +44,7 @@ pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Resul
 
 /// Owner of corners or a lens, for a camera that has a name.
 fn camera_phrase(camera: &Camera) -> String {
-    if camera.name.is_empty() {
-        String::new()
-    } else {
-        format!(" of the camera `{}`", shorten_name(&camera.name))
-    }
+    if camera.name.is_empty() { String::new() } else { format!(" of the camera `{}`", shorten_name(&camera.name)) }
 }
 
 /// Least and largest pixel of corners along an axis.
@@ -67,12 +63,7 @@ fn fill(size: [f64; 2], corners: &[&Corner]) -> bool {
 }
 
 /// Error of a corner that is outside, with the ratio of the sizes.
-fn outside_error(
-    camera: &Camera,
-    size: [f64; 2],
-    corners: &[&Corner],
-    (first, count): (&Corner, usize),
-) -> String {
+fn outside_error(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count): (&Corner, usize)) -> String {
     let most = [0, 1].map(|axis| extent(corners, axis).1);
     let times = [0, 1].map(|axis| most[axis] / size[axis]);
     let is_like = times[0] > 1.2 && (times[0] / times[1] - 1.0).abs() < 0.2;

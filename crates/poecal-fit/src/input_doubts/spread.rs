@@ -43,8 +43,7 @@ pub fn of_positions(
     let step = data.len().saturating_sub(first).div_ceil(ROWS).max(1);
     let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
     let input = columns.get(x).filter(|_| rows.len() >= FEWEST_ROWS)?;
-    let placed =
-        |row: &&usize| data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some());
+    let placed = |row: &&usize| data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some());
     let rows: Vec<usize> = rows.iter().filter(placed).copied().collect();
     let positions = rows.iter().filter_map(|&row| data.observations.get(row)?.measurement.position());
     let positions: Vec<Vector3<f64>> = positions.collect();
@@ -52,9 +51,8 @@ pub fn of_positions(
     let tips = |angle_factor: f64| -> Vec<Vector3<f64>> {
         let tip = |&row: &usize| {
             let readings = data.readings(row).iter().zip(columns);
-            let readings: Vec<f64> = readings
-                .map(|(value, input)| if is_angle(input) { value * angle_factor } else { *value })
-                .collect();
+            let readings: Vec<f64> =
+                readings.map(|(value, input)| if is_angle(input) { value * angle_factor } else { *value }).collect();
             match pair_of(robot, data, row) {
                 (None, None) => robot.forward_kinematics(&readings).translation,
                 pair => instrument_from_target(robot, &Pose::identity(), pair, &readings).translation,
@@ -96,14 +94,8 @@ fn pair_of<'a>(robot: &'a Robot, data: &Dataset, row: usize) -> (Option<&'a Moun
 
 /// Factor by which positions in another unit would be too large or too small, for units near the stated one. The paths from row to row must
 /// then be as long as the model's. A long tool changes the spread as much, but not these paths.
-fn near_unit(
-    stated: NamedUnit,
-    ratio: f64,
-    positions: &[Vector3<f64>],
-    tips: &[Vector3<f64>],
-) -> Option<f64> {
-    let ways =
-        |of: &[Vector3<f64>]| -> Vec<f64> { of.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect() };
+fn near_unit(stated: NamedUnit, ratio: f64, positions: &[Vector3<f64>], tips: &[Vector3<f64>]) -> Option<f64> {
+    let ways = |of: &[Vector3<f64>]| -> Vec<f64> { of.windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect() };
     let (measured, modelled) = (ways(positions), ways(tips));
     let usual = median(modelled.iter().copied())?;
     let factors = units_of(Unit::Metre).map(|unit| stated.to_si(1.0) / unit.to_si(1.0));

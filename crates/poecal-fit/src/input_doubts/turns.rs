@@ -27,12 +27,7 @@ struct FirstLargeAngle {
 
 impl TurnWatch {
     /// Adds an orientation: a rotation vector, or three angles, radians. `place` and names are those of its columns.
-    pub fn observe(
-        &mut self,
-        values: [f64; 3],
-        is_vector: bool,
-        place: impl FnOnce() -> (DoubtLocation, Vec<String>),
-    ) {
+    pub fn observe(&mut self, values: [f64; 3], is_vector: bool, place: impl FnOnce() -> (DoubtLocation, Vec<String>)) {
         self.rows += 1;
         // Angles that count on over many turns are in no other unit.
         let (size, most) = if is_vector {
@@ -59,8 +54,7 @@ impl TurnWatch {
         if (self.beyond as f64) < SHARE * self.rows as f64 || self.largest > (2.0 * TAU).to_degrees() {
             return None;
         }
-        let what =
-            if first.is_vector { "rotation vectors as long as" } else { "angles of an orientation up to" };
+        let what = if first.is_vector { "rotation vectors as long as" } else { "angles of an orientation up to" };
         let degrees: Vec<String> = first.columns.iter().map(|name| format!("`{name}[deg]`")).collect();
         let message = format!(
             "found {what} {:.1} rad in the columns {} ({} of {} rows are beyond {:.1} rad), expected radians: the unit is likely deg, \

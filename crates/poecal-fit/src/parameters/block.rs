@@ -43,10 +43,10 @@ impl BlockNames {
         });
         let targets = (0..self.targets.len()).map(Block::Target);
         let frames = (0..self.stations.len().max(1)).map(Block::Frame);
-        let ranges = (0..self.stations.len().max(1))
-            .flat_map(|station| RangeTerm::ALL.map(|term| Block::Range(station, term)));
-        let clocks = (0..self.stations.len().max(1))
-            .flat_map(|station| ClockTerm::ALL.map(|term| Block::Clock(station, term)));
+        let ranges =
+            (0..self.stations.len().max(1)).flat_map(|station| RangeTerm::ALL.map(|term| Block::Range(station, term)));
+        let clocks =
+            (0..self.stations.len().max(1)).flat_map(|station| ClockTerm::ALL.map(|term| Block::Clock(station, term)));
         joints.chain(targets).chain(frames).chain(ranges).chain(clocks).collect()
     }
 

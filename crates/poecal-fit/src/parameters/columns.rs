@@ -135,9 +135,6 @@ mod tests {
             let seen: Vec<Column> = freedom.motions().iter().map(|&motion| FRAME[motion]).collect();
             assert_eq!(of_freedom(freedom), seen, "{freedom:?}");
         }
-        assert_eq!(
-            of_freedom(Freedom::plane(2)).iter().map(|it| it.name).collect::<Vec<_>>(),
-            ["z", "rx", "ry"]
-        );
+        assert_eq!(of_freedom(Freedom::plane(2)).iter().map(|it| it.name).collect::<Vec<_>>(), ["z", "rx", "ry"]);
     }
 }

@@ -33,11 +33,8 @@ impl ParameterColumns for RangeUnknown {
     }
 
     fn target_twists(&self, chain: &RowChain, _: usize, out: &mut [TargetTwist]) {
-        let moved = if chain.station == self.station {
-            RangeModel::motion(&chain.target, self.term)
-        } else {
-            Vector3::zeros()
-        };
+        let moved =
+            if chain.station == self.station { RangeModel::motion(&chain.target, self.term) } else { Vector3::zeros() };
         out.fill((moved, Vector3::zeros()));
     }
 

@@ -78,12 +78,7 @@ impl ParameterColumns for ScrewAxis {
         let zero = Vector3::zeros();
         let (before, after): (Vec<TargetTwist>, Vec<TargetTwist>) = match self.kind {
             JointKind::Revolute => (
-                vec![
-                    (joint.x, zero),
-                    (joint.y, zero),
-                    (joint.x.cross(&arm), joint.x),
-                    (joint.y.cross(&arm), joint.y),
-                ],
+                vec![(joint.x, zero), (joint.y, zero), (joint.x.cross(&arm), joint.x), (joint.y.cross(&arm), joint.y)],
                 vec![
                     (turned_x, zero),
                     (turned_y, zero),
@@ -115,9 +110,7 @@ impl ParameterColumns for ScrewAxis {
 
     fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
         let local = match self.kind {
-            JointKind::Revolute => {
-                Twist::new(Vector3::new(step[0], step[1], 0.0), Vector3::new(step[2], step[3], 0.0))
-            }
+            JointKind::Revolute => Twist::new(Vector3::new(step[0], step[1], 0.0), Vector3::new(step[2], step[3], 0.0)),
             JointKind::Prismatic => Twist::new(Vector3::zeros(), Vector3::new(step[0], step[1], 0.0)),
         };
         let frame = &mut estimate.base_from_axis[self.joint];

@@ -36,11 +36,7 @@ impl ParameterColumns for TargetFrame {
     fn target_twists(&self, chain: &RowChain, target: usize, out: &mut [TargetTwist]) {
         let zero = Vector3::zeros();
         for (out, &motion) in out.iter_mut().zip(self.freedom.motions()) {
-            let own = if target == self.target {
-                chain.target.rotation.column(motion % 3).into_owned()
-            } else {
-                zero
-            };
+            let own = if target == self.target { chain.target.rotation.column(motion % 3).into_owned() } else { zero };
             *out = if motion < 3 { (own, zero) } else { (zero, own) };
             if chain.shared == Some(self.target) {
                 // The device's frame moves with the target: the base moves in the device's axes by the inverse.

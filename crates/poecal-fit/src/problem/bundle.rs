@@ -44,12 +44,7 @@ impl<'a> Bundle<'a> {
     /// Bundle of the pictures among some rows, with the free parameters of the robot and the unknown numbers of cameras and boards. `None` if
     /// a lens is none of Brown and Conrady's.
     #[must_use]
-    pub fn new(
-        session: Session<'a>,
-        rows: &[u32],
-        free: Vec<Parameter>,
-        numbers: PictureUnknowns,
-    ) -> Option<Self> {
+    pub fn new(session: Session<'a>, rows: &[u32], free: Vec<Parameter>, numbers: PictureUnknowns) -> Option<Self> {
         let pictures = &session.data.pictures;
         let is_brown = |it: &Camera| matches!(it.lens.distortion, Distortion::Brown(_));
         pictures.cameras.iter().all(is_brown).then(|| Bundle {
@@ -215,8 +210,7 @@ impl Bundle<'_> {
     ) {
         let robot = self.layout.dim();
         let explained = root * *pull;
-        let of_column =
-            |weighed: &[f64], column: usize| root * Vector6::from_fn(|k, _| weighed[k * n + column]);
+        let of_column = |weighed: &[f64], column: usize| root * Vector6::from_fn(|k, _| weighed[k * n + column]);
         let own: Vec<(usize, Vector6<f64>)> = (robot..n)
             .filter(|column| (0..MOTIONS).any(|k| weighed[k * n + column] != 0.0))
             .map(|column| (column, of_column(weighed, column)))

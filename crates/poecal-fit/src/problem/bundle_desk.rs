@@ -81,11 +81,7 @@ impl BundleScratch {
 }
 
 /// `E` of `S = EᵀE = (H + Q⁻¹)⁻¹`. Q is the covariance of the shared error of the corners, as motions of the board in the camera's frame.
-pub(crate) fn shared_root(
-    common: CommonError,
-    camera_from_board: &Pose,
-    information: &Matrix6<f64>,
-) -> Matrix6<f64> {
+pub(crate) fn shared_root(common: CommonError, camera_from_board: &Pose, information: &Matrix6<f64>) -> Matrix6<f64> {
     let [a, b] = [common.shift_m, common.turn_rad];
     let own = Matrix6::from_diagonal(&Vector6::new(a, a, a, b, b, b));
     let spread = match common.about {

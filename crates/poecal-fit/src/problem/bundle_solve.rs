@@ -44,12 +44,7 @@ impl Bundle<'_> {
             let next = self.layout.retract(&estimate, &step[..robot]);
             let next_numbers = &numbers + DVector::from_column_slice(&step[robot..]);
             if fall <= SETTLED * sums.cost {
-                return BundleOptimum {
-                    estimate: next,
-                    numbers: next_numbers,
-                    cost: sums.cost - fall,
-                    passes,
-                };
+                return BundleOptimum { estimate: next, numbers: next_numbers, cost: sums.cost - fall, passes };
             }
             let found = self.normal(&next, &next_numbers);
             passes += 1;

@@ -13,8 +13,7 @@ impl KernelColumns {
     /// Columns for rows of one sight and form. If two parameters belong to one frame, axis or target, the first counts.
     pub(crate) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: RowForm) -> Self {
         // An instrument's known zero is not in the kernels.
-        let is_plain =
-            form != RowForm::Along(PlaceComponent::Distance) || state.range(sight.station).is_plain();
+        let is_plain = form != RowForm::Along(PlaceComponent::Distance) || state.range(sight.station).is_plain();
         let form = if is_plain { form } else { form.general() };
         let unknowns = problem.layout.dim();
         let mut made = KernelColumns {
@@ -73,8 +72,7 @@ impl KernelColumns {
     /// Adds translation columns of a frame, and rotation columns about their directions if it turns.
     fn add_frame(&mut self, places: [Option<(usize, f64)>; 6], turns: bool, sign: f64) {
         let first = self.shift_places.len();
-        let of =
-            |place: Option<(usize, f64)>| place.map_or(StepColumn::NONE, |(at, _)| StepColumn { at, sign });
+        let of = |place: Option<(usize, f64)>| place.map_or(StepColumn::NONE, |(at, _)| StepColumn { at, sign });
         let [shifts @ .., a, b, c] = places;
         self.shift_places.extend(shifts.map(of));
         if turns {
@@ -95,8 +93,7 @@ impl KernelColumns {
 
     /// Columns of the device's frame, or of the target that carries it: a step of that target moves the base in the opposite direction.
     fn add_device(&mut self, layout: &Layout, shared: Option<usize>) {
-        let subject =
-            shared.map_or(ParameterSubject::Instrument(self.sight.station), ParameterSubject::Target);
+        let subject = shared.map_or(ParameterSubject::Instrument(self.sight.station), ParameterSubject::Target);
         for (parameter, places) in layout.parameters() {
             let model = parameter.model();
             if model.subject() != subject || self.plan.device.is_some() {
@@ -211,9 +208,7 @@ impl KernelColumns {
 
     fn add_target(&mut self, layout: &Layout) {
         for (parameter, places) in layout.parameters() {
-            if parameter.model().subject() != ParameterSubject::Target(self.sight.target)
-                || self.plan.place.is_some()
-            {
+            if parameter.model().subject() != ParameterSubject::Target(self.sight.target) || self.plan.place.is_some() {
                 continue;
             }
             let freedom = match parameter {

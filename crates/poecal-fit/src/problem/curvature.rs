@@ -26,9 +26,7 @@ impl Problem<'_> {
             Linkage::new(&self.retract(state, &part))
         };
         let second = SecondDifference { ahead: along(1.0), behind: along(-1.0), fraction: FRACTION };
-        FastRows::with_second_difference(self, state, second)
-            .normal(self, state, Accumulate::Gradient)
-            .gradient
+        FastRows::with_second_difference(self, state, second).normal(self, state, Accumulate::Gradient).gradient
     }
 
     /// The residual's second derivative along a step in place of a row's residual.

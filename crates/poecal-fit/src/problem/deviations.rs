@@ -108,8 +108,7 @@ impl AxisDeviation {
         let along = d.dot(&(nominal.origin - frame.translation));
         let nearest = frame.translation + d * along;
         let missing = nominal.origin - nearest;
-        let mut made =
-            AxisDeviation { value: Vector6::zeros(), x, y, d, along, nearest, missing, tilt, shift };
+        let mut made = AxisDeviation { value: Vector6::zeros(), x, y, d, along, nearest, missing, tilt, shift };
         made.value = made.combine(d - nominal.direction, -missing);
         made
     }

@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Kernel, NUMBERS, Noise};
 use poecal_numerics::kernels::{
-    self as lanes, ArmAtEstimate, FixedMotion, PackedRows, PassTotals, RowFunctions, ShapedRow, SimdLevel,
-    UnpackedRow, WIDTH,
+    self as lanes, ArmAtEstimate, FixedMotion, PackedRows, PassTotals, RowFunctions, ShapedRow, SimdLevel, UnpackedRow,
+    WIDTH,
 };
 use poecal_numerics::solve::NormalEquations;
 use poecal_numerics::threads;
@@ -38,11 +38,7 @@ impl FastRows {
     }
 
     /// The same groups for the second derivative of the residuals along a step, which replaces the residuals.
-    pub(crate) fn with_second_difference(
-        problem: &Problem<'_>,
-        state: &Estimate,
-        second: SecondDifference,
-    ) -> Self {
+    pub(crate) fn with_second_difference(problem: &Problem<'_>, state: &Estimate, second: SecondDifference) -> Self {
         let mut groups = RowGroup::of_problem(problem);
         groups.iter_mut().for_each(|group| {
             group.form = group.form.general();
@@ -62,8 +58,7 @@ impl FastRows {
         for group in of_rows {
             let mut arranged = KernelColumns::new(problem, state, group.sight, group.form);
             arranged.plan.ratio = group.ratio;
-            let keeps =
-                problem.rows.len() <= KEPT && !(state.moves_values() || problem.layout.moves_values());
+            let keeps = problem.rows.len() <= KEPT && !(state.moves_values() || problem.layout.moves_values());
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
             groups.push((KernelGroup { arranged, rows: group.rows, keeps, packed: Vec::new() }, scatter));
         }
@@ -75,9 +70,7 @@ impl FastRows {
     /// Packs the rows of small problems, unless joint values depend on the state.
     pub(crate) fn pack(&mut self, problem: &Problem<'_>) {
         let FastRows { groups, linkage, .. } = self;
-        for (KernelGroup { arranged, rows, packed, .. }, _) in
-            groups.iter_mut().filter(|(group, _)| group.keeps)
-        {
+        for (KernelGroup { arranged, rows, packed, .. }, _) in groups.iter_mut().filter(|(group, _)| group.keeps) {
             let size = chunk_size(rows.len());
             packed.resize_with(rows.len().div_ceil(size), PackedRows::default);
             for (rows, packed) in rows.chunks(size).zip(packed) {
@@ -87,12 +80,7 @@ impl FastRows {
     }
 
     /// Normal information of all rows, theory.md §6 (28); without `JᵀJ` if only the gradient is needed.
-    pub(crate) fn normal(
-        &self,
-        problem: &Problem<'_>,
-        state: &Estimate,
-        sums: Accumulate,
-    ) -> NormalEquations {
+    pub(crate) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Accumulate) -> NormalEquations {
         let linkage = Linkage::new(state);
         let mut normal = match sums {
             Accumulate::Gradient => NormalEquations::new(0),
@@ -201,9 +189,9 @@ impl RowShapes<'_> {
             let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];
             screw.target_twists(&chain, self.arranged.sight.target, &mut twists[..scales.len()]);
             for (((v, w), scale), out) in twists.iter().zip(scales).zip(&mut rest) {
-                *out = shaped.sensitivity.map(|[a, b, c, p, q, r]| {
-                    (a * v.x + b * v.y + c * v.z + p * w.x + q * w.y + r * w.z) / scale
-                });
+                *out = shaped
+                    .sensitivity
+                    .map(|[a, b, c, p, q, r]| (a * v.x + b * v.y + c * v.z + p * w.x + q * w.y + r * w.z) / scale);
             }
         }
     }
@@ -267,8 +255,7 @@ pub(crate) fn pack(
         |at| row_data(problem, usual, rows[at] as usize, is_pose),
         |at, joint| {
             let sight = Sight::from(session.observation(rows[at]));
-            let (_, first, second) =
-                linkage.joint_value(route[joint], session.packed, rows[at] as usize, sight);
+            let (_, first, second) = linkage.joint_value(route[joint], session.packed, rows[at] as usize, sight);
             (first, second)
         },
         |at, term| {

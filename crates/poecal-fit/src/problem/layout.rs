@@ -83,8 +83,7 @@ impl Layout {
 
     /// True if zero or scale of an instrument's distances are unknown.
     pub(crate) fn has_range(&self, station: usize) -> bool {
-        let is_of =
-            |parameter: &Parameter| matches!(parameter, Parameter::RangeUnknown(it) if it.station == station);
+        let is_of = |parameter: &Parameter| matches!(parameter, Parameter::RangeUnknown(it) if it.station == station);
         self.parameters.iter().any(is_of)
     }
 
@@ -141,9 +140,7 @@ impl Layout {
                     ParameterSubject::Joint(joint) => {
                         1 + chain.joints.iter().position(|view| view.joint == joint).unwrap_or(joint)
                     }
-                    ParameterSubject::Target(_) | ParameterSubject::Range(_) | ParameterSubject::Clock(_) => {
-                        usize::MAX
-                    }
+                    ParameterSubject::Target(_) | ParameterSubject::Range(_) | ParameterSubject::Clock(_) => usize::MAX,
                 };
                 (place, parameter, places)
             })

@@ -72,8 +72,7 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
         // A few roundings of about the largest number, the distance from the device.
-        let farthest =
-            |&row: &u32| session.observation(row).measurement.position().map_or(0.0, |it| it.amax());
+        let farthest = |&row: &u32| session.observation(row).measurement.position().map_or(0.0, |it| it.amax());
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
         let farthest = some.map(farthest);
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
@@ -240,8 +239,7 @@ impl Problem<'_> {
         let written = self.formulated_measurement(row);
         let (channels, noise) = (written.measurement.channels(), self.noise(row));
         let mut sensitivity = [[0.0; 6]; NUMBERS];
-        written
-            .sensitivity(&range.map_or(*predicted, |range| range.locate_target(predicted)), &mut sensitivity);
+        written.sensitivity(&range.map_or(*predicted, |range| range.locate_target(predicted)), &mut sensitivity);
         for (&(term, scale), out) in terms.iter().zip(out) {
             let moved = RangeModel::motion(predicted, term) / scale;
             for ((out, [x, y, z, ..]), channel) in out.iter_mut().zip(&sensitivity).zip(channels) {

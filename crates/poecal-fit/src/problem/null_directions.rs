@@ -33,21 +33,14 @@ impl Layout {
     /// Motions that leave all held blocks in place and change no measurement of these rows. They are those of the base under all
     /// bodies (theory.md §8 (37)), and of the bodies beyond a joint with its offset turned back (§3 (9)).
     #[must_use]
-    pub fn motions_without_effect(
-        &self,
-        estimate: &Estimate,
-        session: &Session<'_>,
-        rows: &[u32],
-    ) -> NullDirections {
+    pub fn motions_without_effect(&self, estimate: &Estimate, session: &Session<'_>, rows: &[u32]) -> NullDirections {
         let data = session.data;
         let base = base_motions(self.length_m());
         // The terms of a formulation are compared as they are.
-        let offsets =
-            if session.unknowns.terms.is_empty() { Vec::new() } else { self.offset_motions(estimate) };
+        let offsets = if session.unknowns.terms.is_empty() { Vec::new() } else { self.offset_motions(estimate) };
         let is_held = |station: usize| {
-            let of_it = |(parameter, _): (&Parameter, _)| {
-                parameter.model().subject() == ParameterSubject::Instrument(station)
-            };
+            let of_it =
+                |(parameter, _): (&Parameter, _)| parameter.model().subject() == ParameterSubject::Instrument(station);
             !self.parameters().any(of_it)
         };
         let sees_axes = |station: usize| data.device_freedom(station, rows) == Freedom::FRAME;
@@ -62,19 +55,11 @@ impl Layout {
             return NullDirections { directions: Vec::new(), of_base };
         }
         let all: Vec<BodyMotion> = base.into_iter().chain(offsets).collect();
-        NullDirections {
-            directions: self.unobserved_combinations(estimate, data, rows, (&all, &|_| true)),
-            of_base,
-        }
+        NullDirections { directions: self.unobserved_combinations(estimate, data, rows, (&all, &|_| true)), of_base }
     }
 
     /// Motions of the base that leave all held blocks in place, except the joints by which links bend: these move with the links.
-    pub(crate) fn base_motions(
-        &self,
-        estimate: &Estimate,
-        session: &Session<'_>,
-        rows: &[u32],
-    ) -> Vec<Vec<f64>> {
+    pub(crate) fn base_motions(&self, estimate: &Estimate, session: &Session<'_>, rows: &[u32]) -> Vec<Vec<f64>> {
         let bends = |joint: usize| session.robot.joints.get(joint).is_some_and(|it| it.give_of.is_some());
         self.unobserved_combinations(
             estimate,
@@ -145,9 +130,8 @@ impl Layout {
         // Information of the held blocks on the motions.
         let mut gram = DMatrix::zeros(count, count);
         let mut add = |subject: ParameterSubject, body: Option<Body>, effect: &dyn Fn(&Twist) -> Vec<f64>| {
-            let is_of = |parameter: &&Parameter| {
-                parameter.model().subject() == subject && parameter.value_term().is_none()
-            };
+            let is_of =
+                |parameter: &&Parameter| parameter.model().subject() == subject && parameter.value_term().is_none();
             let own = self.parameters().find(|(parameter, _)| is_of(parameter));
             let effects = effects_on(estimate, body, motions, effect);
             match own {

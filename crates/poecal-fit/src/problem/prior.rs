@@ -59,8 +59,7 @@ impl Prior {
         let Session { robot, data, unknowns, .. } = *session;
         let nominal = nominal_estimate(robot, data);
         let is_shared = |target: usize| {
-            (0..nominal.tree.instruments().len())
-                .any(|station| nominal.tree.shared_target(station) == Some(target))
+            (0..nominal.tree.instruments().len()).any(|station| nominal.tree.shared_target(station) == Some(target))
         };
         let bodies = nominal.tree.targets().iter().enumerate();
         let moving = bodies.filter(|(target, body)| body.joint().is_some() && !is_shared(*target));
@@ -86,11 +85,7 @@ impl Prior {
             origin: joint.frame.translation,
             turns: !joint.screw.is_prismatic(),
             // A compliant joint has no axis of its own.
-            tolerance: if joint.give_of.is_some() {
-                Tolerance::NONE
-            } else {
-                joint.tolerance.unwrap_or(common)
-            },
+            tolerance: if joint.give_of.is_some() { Tolerance::NONE } else { joint.tolerance.unwrap_or(common) },
         });
         Prior {
             axes: axes.collect(),
@@ -157,12 +152,8 @@ impl Prior {
     fn deviations(&self, estimate: &Estimate, motion: Option<&Pose>) -> Deviations {
         let moved = |frame: &Pose| motion.map_or(*frame, |motion| *motion * *frame);
         let frames = estimate.base_from_axis.iter().map(moved);
-        let axes: Vec<AxisDeviation> = self
-            .axes
-            .iter()
-            .zip(frames)
-            .map(|(nominal, frame)| AxisDeviation::new(nominal, &frame))
-            .collect();
+        let axes: Vec<AxisDeviation> =
+            self.axes.iter().zip(frames).map(|(nominal, frame)| AxisDeviation::new(nominal, &frame)).collect();
         let frame = |nominal: &NominalTarget| estimate.base_from_target.get(nominal.target).map(moved);
         let targets = self.targets.iter().filter_map(|it| Some(it.deviation(&frame(it)?))).collect();
         let by_base = self.base_free.then(|| {
@@ -197,8 +188,7 @@ impl Prior {
             let nominal = self.terms.iter().find(|it| it.joint == joint && it.term == term);
             let own = self.term_priors.iter().find(|it| it.joint == joint && it.term == term);
             let sigma = own.map_or_else(|| kind.deviation_of(term), |it| it.deviation);
-            let value =
-                (estimate.coefficient(joint, term) - nominal.map_or(0.0, |it| it.coefficient)) / sigma;
+            let value = (estimate.coefficient(joint, term) - nominal.map_or(0.0, |it| it.coefficient)) / sigma;
             normal.cost += 0.5 * weight * value * value;
             for &(place, scale) in places {
                 normal.gradient[place] -= weight * value / (sigma * scale);
@@ -268,9 +258,7 @@ impl Prior {
                 let own = &own[..count];
                 add_columns((places, own), &deviation.value, weight, n, normal);
                 if let Some(base) = by_base.and_then(|(_, targets)| targets.get(at)) {
-                    shared.extend(
-                        places.iter().zip(own).map(|((at, scale), own)| (*at, base.tr_mul(own) / *scale)),
-                    );
+                    shared.extend(places.iter().zip(own).map(|((at, scale), own)| (*at, base.tr_mul(own) / *scale)));
                 }
             }
         }
@@ -305,8 +293,7 @@ fn add_axis(
     }
     for (k, &(place, scale)) in (first..4).zip(places) {
         for (l, &(other, other_scale)) in (first..4).zip(places).skip(k - first) {
-            normal.gram[place.min(other) * n + place.max(other)] +=
-                weight / (scale * other_scale) * own.product(k, l);
+            normal.gram[place.min(other) * n + place.max(other)] += weight / (scale * other_scale) * own.product(k, l);
         }
     }
 }
@@ -340,8 +327,7 @@ mod tests {
 
     #[test]
     fn two_axes_share_their_distance() {
-        let joint =
-            |name: &str, x: f64| Joint::revolute(name, Screw::revolute(&Vector3::z(), &(x * Vector3::x())));
+        let joint = |name: &str, x: f64| Joint::revolute(name, Screw::revolute(&Vector3::z(), &(x * Vector3::x())));
         let robot = Robot::new("r", vec![joint("a", 0.0), joint("b", 0.5)], Pose::identity()).unwrap();
         let tolerance = Tolerance { length_m: 0.004, ..Tolerance::default() };
         let prior = Prior::new(&robot, tolerance, true);

@@ -36,12 +36,7 @@ impl RowBlock {
 impl Problem<'_> {
     /// Calls `each` with the Jacobian and residuals of up to [`WIDTH`] rows, which it may overwrite, and their positions in `rows`. The
     /// order of the blocks is that of the groups, not of `rows`.
-    pub fn for_row_blocks(
-        &self,
-        state: &Estimate,
-        rows: &[u32],
-        mut each: impl FnMut(&[u32], &mut RowBlock),
-    ) {
+    pub fn for_row_blocks(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(&[u32], &mut RowBlock)) {
         let mut block = RowBlock::new(self.layout().dim());
         for group in RowGroup::all_from_rows(self, rows, |position, _| position) {
             let arranged = KernelColumns::new(self, state, group.sight, group.form);

@@ -28,9 +28,8 @@ impl RowGroup {
         if problem.rows.len() <= CHUNK {
             return RowGroup::all_from_rows(problem, &problem.rows, |_, row| row);
         }
-        let parts = threads::map_chunks(&problem.rows, CHUNK, |_, rows| {
-            RowGroup::all_from_rows(problem, rows, |_, row| row)
-        });
+        let parts =
+            threads::map_chunks(&problem.rows, CHUNK, |_, rows| RowGroup::all_from_rows(problem, rows, |_, row| row));
         let mut groups: Vec<RowGroup> = Vec::new();
         for other in parts.into_iter().flatten() {
             match groups.iter_mut().find(|group| group.holds(other.sight, other.form)) {
@@ -45,11 +44,7 @@ impl RowGroup {
     }
 
     /// Groups rows by target, station and form; stores `key(position, row)` of each.
-    pub(crate) fn all_from_rows(
-        problem: &Problem<'_>,
-        rows: &[u32],
-        key: impl Fn(u32, u32) -> u32,
-    ) -> Vec<RowGroup> {
+    pub(crate) fn all_from_rows(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
         let mut groups: Vec<RowGroup> = Vec::new();
         let (usual, are_alike) = (Whitening::new(problem.noise), problem.session.noise_ratios.is_empty());
         let ratio = |observation: &Observation| match are_alike {

@@ -76,8 +76,7 @@ impl PlainScatter {
 
     fn add(&self, totals: &PassTotals, gram: &mut [f64]) {
         // A product has two places in the matrix; the upper one is the earlier.
-        let place =
-            |(row, at): (usize, usize), (other_row, other): (usize, usize)| (row + other).min(other_row + at);
+        let place = |(row, at): (usize, usize), (other_row, other): (usize, usize)| (row + other).min(other_row + at);
         let mut tiles = totals.products.as_chunks::<{ TILE * TILE }>().0.iter();
         for (first, left) in self.at.chunks(TILE).enumerate() {
             for (second, right) in self.at.chunks(TILE).enumerate().skip(first) {

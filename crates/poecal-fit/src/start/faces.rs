@@ -24,11 +24,7 @@ pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
 
 /// The data with faces on planes whose poses are known, by the frames of their stations in the base: a plane's z may be either of its sides.
 #[must_use]
-pub fn faces_on_known_planes<'a>(
-    data: &'a Dataset,
-    robot: &Robot,
-    base_from_plane: &[Pose],
-) -> Cow<'a, Dataset> {
+pub fn faces_on_known_planes<'a>(data: &'a Dataset, robot: &Robot, base_from_plane: &[Pose]) -> Cow<'a, Dataset> {
     let Some(sums) = turns_of_faces(data, robot) else { return Cow::Borrowed(data) };
     let (mut data, targets) = (data.clone(), data.targets.len());
     for observation in &mut data.observations {

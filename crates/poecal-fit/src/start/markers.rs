@@ -61,8 +61,7 @@ impl MarkerGroup {
             let near = all.iter().filter(|it| (**it - middle).abs() <= off).count();
             (near as f64 >= SHARE * all.len() as f64).then_some((middle, off))
         };
-        let seen =
-            |column: usize| frames.iter().filter(|it| it.get(column).is_some_and(Option::is_some)).count();
+        let seen = |column: usize| frames.iter().filter(|it| it.get(column).is_some_and(Option::is_some)).count();
         let mut columns: Vec<usize> = columns.to_vec();
         columns.sort_by_key(|it| (std::cmp::Reverse(seen(*it)), *it));
         let known: BTreeMap<(usize, usize), (f64, f64)> = (columns.iter().enumerate())
@@ -115,20 +114,13 @@ impl MarkerGroup {
             .filter_map(|column| Some((column, place(column)?)))
             .take(MOST_PLACES)
             .collect();
-        let mut search = MarkerSearch {
-            group: self,
-            places: &places,
-            taken: Vec::new(),
-            best: None,
-            count: 0,
-            is_unclear: false,
-        };
+        let mut search =
+            MarkerSearch { group: self, places: &places, taken: Vec::new(), best: None, count: 0, is_unclear: false };
         search.next();
         let found = search.best.filter(|_| search.count >= FEWEST_MARKERS && !search.is_unclear);
         if is_right {
             // Without a found marker there is no wrong name.
-            let named: Vec<Option<usize>> =
-                self.markers.iter().map(|it| place(*it).is_some().then_some(*it)).collect();
+            let named: Vec<Option<usize>> = self.markers.iter().map(|it| place(*it).is_some().then_some(*it)).collect();
             return found.filter(|it| {
                 *it != named && named.iter().zip(it).all(|(named, found)| named.is_none() || named == found)
             });
@@ -209,12 +201,7 @@ mod tests {
     use poecal_arm::lie::rotation;
 
     /// A body that turns and moves: its markers with noise, in frames.
-    fn simulate_markers(
-        markers: &[Vector3<f64>],
-        frames: usize,
-        noise_m: f64,
-        seed: u64,
-    ) -> Vec<MarkerPositions> {
+    fn simulate_markers(markers: &[Vector3<f64>], frames: usize, noise_m: f64, seed: u64) -> Vec<MarkerPositions> {
         let mut state = seed;
         let mut random = move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -240,11 +227,7 @@ mod tests {
         for seed in 0..20_u64 {
             let spread = |k: u64| {
                 let angle = (seed * 5 + k) as f64 * 2.399;
-                Vector3::new(
-                    0.05 * angle.cos() + 0.011 * k as f64,
-                    0.07 * angle.sin(),
-                    0.013 * (k * k) as f64,
-                )
+                Vector3::new(0.05 * angle.cos() + 0.011 * k as f64, 0.07 * angle.sin(), 0.013 * (k * k) as f64)
             };
             let markers: Vec<Vector3<f64>> = (0..4 + seed % 2).map(spread).collect();
             let count = markers.len();
@@ -301,8 +284,7 @@ mod tests {
     #[test]
     fn what_is_alike_both_ways_is_not_decided() {
         // The triangle is isosceles: no distance reveals the exchange of its equal vertices, and both reveal the ghost of its apex.
-        let markers =
-            [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
+        let markers = [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
         let mut frames = simulate_markers(&markers, 200, 1e-4, 4);
         frames[50].swap(0, 1);
         let found = RenamedMarkers::from_frames(&frames, &[0, 1, 2], &[]).unwrap();

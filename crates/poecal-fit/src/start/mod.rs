@@ -20,10 +20,9 @@ pub use faces::{faces_on_known_planes, settle_faces};
 pub use markers::{FEWEST_MARKERS, MarkerPositions, RenamedMarkers};
 pub use pairing::{
     Agreement, AlignedPairs, EVIDENT, FEWEST_PAIRS, JointStream, LagFailure, LaggedMeasurements, LaggedPairs,
-    MeasuredStands, MotionEntry, MotionMeasurements, MotionRecording, MovingRow, ResampledStream, RowOrder,
-    RowPair, RowStream, StaticInterval, StreamChannels, StreamFailure, TimeInterval, UnpairedRows, mm,
-    motion_of_points, motion_of_target, number_lines, numbered_as, smooth_times, stands_of_measured,
-    stands_of_readings,
+    MeasuredStands, MotionEntry, MotionMeasurements, MotionRecording, MovingRow, ResampledStream, RowOrder, RowPair,
+    RowStream, StaticInterval, StreamChannels, StreamFailure, TimeInterval, UnpairedRows, mm, motion_of_points,
+    motion_of_target, number_lines, numbered_as, smooth_times, stands_of_measured, stands_of_readings,
 };
 pub use pictures::{SolvedPictures, predicted_pose, settle_pictures};
 pub use registration::{

@@ -96,11 +96,7 @@ impl SampledRows {
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let motion = chain.target * start.base_from_target[observation.target].inverse();
             let Some(position) = model.position().filter(|_| has_places) else {
-                seen.others.push(StartRow {
-                    motion,
-                    measurement: observation.measurement,
-                    target: observation.target,
-                });
+                seen.others.push(StartRow { motion, measurement: observation.measurement, target: observation.target });
                 continue;
             };
             seen.base_motion.push(motion);
@@ -209,8 +205,7 @@ impl SampledRows {
             candidates.push(self.at_rotation(nominal, start));
         }
         if problem.targets_free {
-            let shrunk: Vec<Pose> =
-                start.base_from_target.iter().map(|pose| self.on_last_axis(start, pose)).collect();
+            let shrunk: Vec<Pose> = start.base_from_target.iter().map(|pose| self.on_last_axis(start, pose)).collect();
             candidates.push(self.rigid(&shrunk));
         }
         candidates
@@ -218,8 +213,7 @@ impl SampledRows {
 
     /// The target moved onto the last axis, where the last joint does not move it.
     fn on_last_axis(&self, start: &Estimate, target: &Pose) -> Pose {
-        let place =
-            start.screws().last().map_or(target.translation, |s| s.nearest_point(&target.translation));
+        let place = start.screws().last().map_or(target.translation, |s| s.nearest_point(&target.translation));
         Pose::new(target.rotation, place)
     }
 
@@ -275,9 +269,8 @@ impl SampledRows {
             if count == 0 || !unknowns.moves_target(target) {
                 continue;
             }
-            let sum: Vector3<f64> = rows()
-                .map(|k| self.base_motion[k].inverse().act(&base_from_device.act(&self.measured[k])))
-                .sum();
+            let sum: Vector3<f64> =
+                rows().map(|k| self.base_motion[k].inverse().act(&base_from_device.act(&self.measured[k]))).sum();
             let pose = &mut estimate.base_from_target[target];
             pose.translation = sum / count as f64;
             if rows().any(|k| self.turned[k].is_some()) {

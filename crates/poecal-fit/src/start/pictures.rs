@@ -155,8 +155,7 @@ fn settle_poses(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
     for _ in 0..ROUNDS {
         let registered = register_pictures(&found, robot, &packed, &used);
         let predicted = predict_poses(&found, robot, &packed, &rows, &registered);
-        let missed: Vec<f64> =
-            found.pictures.all.iter().zip(&predicted).map(|it| missed_px(&found, it)).collect();
+        let missed: Vec<f64> = found.pictures.all.iter().zip(&predicted).map(|it| missed_px(&found, it)).collect();
         let usual = median(missed.iter().copied()).unwrap_or(f64::INFINITY);
         if usual < best {
             (best, result) = (usual, found.clone());
@@ -169,8 +168,7 @@ fn settle_poses(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
             has_changed |= before != found.pictures.all[at].poses.first().copied();
         }
         // A picture whose board is tilted in the wrong direction would bias all others.
-        let kept =
-            rows.iter().zip(&missed).filter(|(_, missed)| **missed <= ODD * usual).map(|(row, _)| *row);
+        let kept = rows.iter().zip(&missed).filter(|(_, missed)| **missed <= ODD * usual).map(|(row, _)| *row);
         let kept: Vec<u32> = kept.collect();
         if !has_changed && kept == used {
             break;
@@ -193,13 +191,7 @@ fn register_pictures(data: &Dataset, robot: &Robot, packed: &PackedValues, rows:
 }
 
 /// Poses of the boards in the frames of their cameras, as an estimate predicts them, one for each picture.
-fn predict_poses(
-    data: &Dataset,
-    robot: &Robot,
-    packed: &PackedValues,
-    rows: &[u32],
-    estimate: &Estimate,
-) -> Vec<Pose> {
+fn predict_poses(data: &Dataset, robot: &Robot, packed: &PackedValues, rows: &[u32], estimate: &Estimate) -> Vec<Pose> {
     let session = Session::new(robot, data, packed, true);
     let errors = session.errors(rows, estimate);
     let seen = data.pictures.all.iter().zip(errors);

@@ -79,8 +79,7 @@ impl StartRows<'_> {
         let middle = ranges.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / count;
         let mean = ranges.iter().map(|(_, range)| range).sum::<f64>() / count;
         let has_zero = self.rows.iter().any(|row| row.measurement.function().zero_is_unknown);
-        let varies =
-            ranges.iter().any(|(_, range)| (range - mean).abs() > ROUNDING.sqrt() * mean.abs().max(1.0));
+        let varies = ranges.iter().any(|(_, range)| (range - mean).abs() > ROUNDING.sqrt() * mean.abs().max(1.0));
         let unknowns = if has_zero && varies { 5 } else { 4 };
         let (mut gram, mut right) = (vec![0.0; unknowns * unknowns], vec![0.0; unknowns]);
         for (place, range) in &ranges {
@@ -110,8 +109,7 @@ impl StartRows<'_> {
     /// Middle of the balls.
     fn by_sockets(&self) -> Option<Pose> {
         let places = self.rows.iter().filter(|row| row.measurement.clue() == InitialGuess::Middle);
-        let (sum, count) =
-            places.fold((Vector3::zeros(), 0), |(sum, count), row| (sum + self.place(row), count + 1));
+        let (sum, count) = places.fold((Vector3::zeros(), 0), |(sum, count), row| (sum + self.place(row), count + 1));
         (count > 0).then(|| self.frame_at(&(sum / f64::from(count))))
     }
 
@@ -158,8 +156,7 @@ impl StartRows<'_> {
         middles.iter().any(Option::is_some).then(|| {
             // An axis that is not measured is zero; the nearest rotation has the cross product of the others for it.
             let turn = rotation_maximising(&axes.transpose());
-            let along =
-                [0, 1, 2].map(|k| middles[k].map_or(0.0, |(middle, mean)| mean - (turn.row(k) * middle).x));
+            let along = [0, 1, 2].map(|k| middles[k].map_or(0.0, |(middle, mean)| mean - (turn.row(k) * middle).x));
             Pose::new(turn, along.into())
         })
     }
@@ -179,8 +176,7 @@ impl StartRows<'_> {
         let up = |row: &'_ StartRow| {
             if let InitialGuess::Up(up) = row.measurement.clue() { Some(up) } else { None }
         };
-        let seen: Vec<(&StartRow, Vector3<f64>)> =
-            self.rows.iter().filter_map(|row| Some((row, up(row)?))).collect();
+        let seen: Vec<(&StartRow, Vector3<f64>)> = self.rows.iter().filter_map(|row| Some((row, up(row)?))).collect();
         if seen.is_empty() {
             return Vec::new();
         }
@@ -230,9 +226,8 @@ fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, up: &Vector3<f64>)
     let sign = if axes[0].dot(up) < 0.0 { -1.0 } else { 1.0 };
     let at = |above: f64| -> Vector3<f64> {
         let along = axes.iter().zip(&values).skip(1);
-        let others: Vector3<f64> = along
-            .map(|(axis, value)| axis * (axis.dot(&right) / (value - least + above).max(f64::MIN_POSITIVE)))
-            .sum();
+        let others: Vector3<f64> =
+            along.map(|(axis, value)| axis * (axis.dot(&right) / (value - least + above).max(f64::MIN_POSITIVE))).sum();
         others + axes[0] * (axes[0].dot(&right) / above.max(f64::MIN_POSITIVE))
     };
     let scale = gram.trace().max(f64::MIN_POSITIVE);

@@ -117,8 +117,7 @@ pub fn clock_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<It
     };
     let stations: Vec<usize> = (0..data.station_count()).filter(|&station| is_seen(station)).collect();
     stations.into_iter().flat_map(move |station| {
-        let terms =
-            ClockTerm::ALL.into_iter().filter(move |&term| !unknowns.held_clocks.contains(&(station, term)));
+        let terms = ClockTerm::ALL.into_iter().filter(move |&term| !unknowns.held_clocks.contains(&(station, term)));
         terms.map(move |term| ClockUnknown { station, term })
     })
 }
@@ -131,8 +130,7 @@ pub fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<I
     // If all planes are unknown, the height of a face is one with theirs (theory.md §4 (15c)).
     let is_known = |&row: &u32| {
         let seen = session.observation(row);
-        seen.measurement.face_normal().is_some()
-            && (!session.device_free || !unknowns.moves_frame(seen.station))
+        seen.measurement.face_normal().is_some() && (!session.device_free || !unknowns.moves_frame(seen.station))
     };
     let has_height = |freedom: &Freedom| freedom.without_height() != *freedom;
     if freedoms.iter().any(has_height) && !rows.iter().any(is_known) {

@@ -60,10 +60,8 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let ranges = unknowns.ranges.iter().filter(|(at, _)| *at == station).map(|&(_, term)| (0, term));
         // All clocks are estimated together, once the frames are.
         let held_clocks = ClockTerm::ALL.map(|term| (0, term)).to_vec();
-        let of_one =
-            Unknowns { held_frames: Vec::new(), ranges: ranges.collect(), held_clocks, ..unknowns.clone() };
-        let session =
-            Session { data: &alone, noise_ratios: &[], device_free, unknowns: &of_one, ..problem.session };
+        let of_one = Unknowns { held_frames: Vec::new(), ranges: ranges.collect(), held_clocks, ..unknowns.clone() };
+        let session = Session { data: &alone, noise_ratios: &[], device_free, unknowns: &of_one, ..problem.session };
         let noise = problem.session.usual_noise(station, problem.noise);
         let one = Registration { noise, session, rows: &rows, targets_free: !by_known, prior: problem.prior };
         let (seen, _) = at_one_station(&one, &found.seen_from(station));

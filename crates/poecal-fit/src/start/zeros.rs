@@ -161,11 +161,7 @@ impl<'a> Search<'a> {
     fn refined(&self, found: &SignCandidate) -> SignCandidate {
         let (data, registered) = self.changed(&found.signs, &found.zeros);
         let by_axes = self.fitter.with_term_and_axes(&data, &registered, (&self.fitted, Term::OFFSET), AXES);
-        SignCandidate {
-            signs: found.signs.clone(),
-            zeros: self.zeros(&by_axes.0, &found.zeros),
-            ..found.clone()
-        }
+        SignCandidate { signs: found.signs.clone(), zeros: self.zeros(&by_axes.0, &found.zeros), ..found.clone() }
     }
 
     /// Combinations of signs: all of few joints, beginning with no joint turned.
@@ -189,8 +185,7 @@ impl<'a> Search<'a> {
     /// The zeros that fit best with these signs, from a start.
     fn candidate(&self, signs: Vec<f64>, start: &[f64]) -> SignCandidate {
         let (data, registered) = self.changed(&signs, start);
-        let (estimate, misfit) =
-            self.fitter.with_term(&data, &registered, (&self.fitted, Term::OFFSET), ITERATIONS);
+        let (estimate, misfit) = self.fitter.with_term(&data, &registered, (&self.fitted, Term::OFFSET), ITERATIONS);
         SignCandidate { zeros: self.zeros(&estimate, start), signs, misfit }
     }
 

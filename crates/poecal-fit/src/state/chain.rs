@@ -78,16 +78,7 @@ impl Linkage {
         let terms = (0..joints).map(|joint| of(joint).collect()).collect();
         let ranges = if ranges.iter().all(RangeModel::is_plain) { Vec::new() } else { ranges.clone() };
         let clocks = if clocks.iter().all(ClockChange::is_none) { Vec::new() } else { clocks.clone() };
-        Linkage {
-            tree: Arc::clone(tree),
-            steps,
-            further_from_first,
-            ends,
-            first_device: first,
-            terms,
-            ranges,
-            clocks,
-        }
+        Linkage { tree: Arc::clone(tree), steps, further_from_first, ends, first_device: first, terms, ranges, clocks }
     }
 
     /// `device_from_axis` of the first joint on the kinematic chain from an instrument to a target, then each axis in the one before, at
@@ -101,9 +92,7 @@ impl Linkage {
 
     /// Device frame of a sight without moving joints.
     pub(crate) fn fixed_device_frame(&self, sight: Sight) -> Option<&Pose> {
-        self.steps[self.tree.route_index(sight)]
-            .is_empty()
-            .then(|| &self.ends[self.tree.sight_index(sight)].0)
+        self.steps[self.tree.route_index(sight)].is_empty().then(|| &self.ends[self.tree.sight_index(sight)].0)
     }
 
     /// Zero and scale of a station's distances, unless these are plain.
@@ -139,9 +128,7 @@ impl Linkage {
     /// For each joint of a route, true if it is revolute, and its relative frame, from the first station.
     pub(crate) fn turning_steps(&self, route: usize) -> impl Iterator<Item = (bool, FixedMotion)> {
         let kinds = self.tree.routes()[route].iter().map(|passed| self.tree.kinds()[passed.joint]);
-        kinds
-            .zip(&self.steps[route])
-            .map(|(kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
+        kinds.zip(&self.steps[route]).map(|(kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
     }
 
     /// Change of the value of a joint by the error of a station's clock, if there is one: theory.md §5 (26a).
@@ -299,28 +286,13 @@ impl RowChain {
             let z = frame.rotation.column(2).into_owned();
             moved = match kind {
                 JointKind::Revolute => Pose::new(
-                    Matrix3::from_columns(&[
-                        x * cosine_or_value + y * sine,
-                        y * cosine_or_value - x * sine,
-                        z,
-                    ]),
+                    Matrix3::from_columns(&[x * cosine_or_value + y * sine, y * cosine_or_value - x * sine, z]),
                     frame.translation,
                 ),
                 JointKind::Prismatic => Pose::new(frame.rotation, frame.translation + z * cosine_or_value),
             };
             let origin = frame.translation;
-            self.joints.push(JointView {
-                joint,
-                backward,
-                kind,
-                x,
-                y,
-                z,
-                origin,
-                value,
-                cosine_or_value,
-                sine,
-            });
+            self.joints.push(JointView { joint, backward, kind, x, y, z, origin, value, cosine_or_value, sine });
         }
         self.last = moved;
         self.target = moved * *end;

@@ -340,12 +340,8 @@ pub fn radian_m(robot: &Robot, packed: &PackedValues) -> f64 {
 pub fn nominal_estimate(robot: &Robot, data: &Dataset) -> Estimate {
     let place = robot.places_of_targets();
     let base_from_target = data.targets.iter().map(|name| place(name.as_deref()).1).collect();
-    let mut delivered = Estimate::from_placed(
-        robot,
-        KinematicTree::from_robot(robot, data),
-        base_from_target,
-        Pose::identity(),
-    );
+    let mut delivered =
+        Estimate::from_placed(robot, KinematicTree::from_robot(robot, data), base_from_target, Pose::identity());
     for station in 0..data.station_count() {
         let name = data.stations.get(station).and_then(Option::as_deref);
         if let Some(mount) = robot.instruments.iter().find(|mount| Some(mount.name.as_str()) == name) {

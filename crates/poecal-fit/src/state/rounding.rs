@@ -97,8 +97,7 @@ mod tests {
 
     #[test]
     fn steps_of_rounded_values_are_found() {
-        let of =
-            |step: f64| (0..40).map(|k| ((f64::from(k) * 1.7).sin() * 90.0 / step).round() * step).collect();
+        let of = |step: f64| (0..40).map(|k| ((f64::from(k) * 1.7).sin() * 90.0 / step).round() * step).collect();
         assert_eq!(step_of(of(0.1)), Some(0.1));
         assert_eq!(step_of(of(0.01)), Some(0.01));
         assert_eq!(step_of(of(0.5)), None);

@@ -91,12 +91,7 @@ impl<'a> Session<'a> {
     }
 
     /// Squares of a row's residual (m², rad²) in units of its variances.
-    pub fn whiten_squares(
-        &self,
-        observation: &Observation,
-        squares: ByQuantity<f64>,
-        usual: Noise,
-    ) -> ByQuantity<f64> {
+    pub fn whiten_squares(&self, observation: &Observation, squares: ByQuantity<f64>, usual: Noise) -> ByQuantity<f64> {
         let noise = self.noise_of(observation, usual);
         ByQuantity::from_fn(|quantity| squares[quantity] / (noise[quantity] * noise[quantity]))
     }

@@ -50,9 +50,7 @@ impl<'a> SideBySide<'a> {
         }
         if self.plain {
             for (lane, &row) in rows.iter().enumerate() {
-                for (wide, &(cosine_or_value, sine)) in
-                    self.values.iter_mut().zip(session.packed.row(row as usize))
-                {
+                for (wide, &(cosine_or_value, sine)) in self.values.iter_mut().zip(session.packed.row(row as usize)) {
                     wide[0].0[lane] = cosine_or_value;
                     wide[1].0[lane] = sine;
                 }
@@ -62,8 +60,7 @@ impl<'a> SideBySide<'a> {
         for (lane, &row) in rows.iter().enumerate() {
             let sight = Sight::from(session.observation(row));
             for (wide, &passed) in self.values.iter_mut().zip(self.route) {
-                let (_, cosine_or_value, sine) =
-                    self.linkage.joint_value(passed, session.packed, row as usize, sight);
+                let (_, cosine_or_value, sine) = self.linkage.joint_value(passed, session.packed, row as usize, sight);
                 wide[0].0[lane] = cosine_or_value;
                 wide[1].0[lane] = sine;
             }
@@ -220,8 +217,7 @@ mod tests {
             let packed = PackedValues::from_dataset(&robot, &data);
             let session = Session::new(&robot, &data, &packed, false);
             for offsets in [[0.0; 4], [0.3, -0.2, 0.6, 0.1]] {
-                let estimate =
-                    Estimate::new(&robot, vec![robot.home], Pose::identity()).with_offsets(&offsets);
+                let estimate = Estimate::new(&robot, vec![robot.home], Pose::identity()).with_offsets(&offsets);
                 let linkage = Linkage::new(&estimate);
                 let mut chain = RowChain::default();
                 for level in lanes::simd_levels() {
@@ -234,16 +230,11 @@ mod tests {
                             .collect();
                         let tip = robot.forward_kinematics(&values);
                         chain.evaluate(&linkage, &packed, row, 0);
-                        for (found, expected) in
-                            [(last, chain.last), (last * *linkage.frames(Sight::from(0)).1, tip)]
-                        {
+                        for (found, expected) in [(last, chain.last), (last * *linkage.frames(Sight::from(0)).1, tip)] {
                             let turned = (found.rotation - expected.rotation).norm();
                             let moved = (found.translation - expected.translation).norm();
                             // Rounding of a few products of numbers of about one.
-                            assert!(
-                                turned < 1e-14 && moved < 1e-14,
-                                "{level:?} {row}: {turned:e}, {moved:e}"
-                            );
+                            assert!(turned < 1e-14 && moved < 1e-14, "{level:?} {row}: {turned:e}, {moved:e}");
                         }
                     }
                 }
@@ -256,8 +247,7 @@ mod tests {
         let readings = readings();
         for robot in robots() {
             let packed = PackedValues::new(&robot, &readings, 4);
-            let targets =
-                vec![robot.home, robot.home * Pose::from_xyz_rpy([0.2, 0.0, -0.1], [0.5, 1.0, 2.0])];
+            let targets = vec![robot.home, robot.home * Pose::from_xyz_rpy([0.2, 0.0, -0.1], [0.5, 1.0, 2.0])];
             let device_from_base = Pose::from_xyz_rpy([2.0, -1.0, 0.4], [0.1, 0.2, -2.0]);
             let linkage = Linkage::new(&Estimate::new(&robot, targets, device_from_base));
             let mut chain = RowChain::default();
@@ -279,12 +269,8 @@ mod tests {
                         Measurement::of_pose(&pose)
                     }
                 };
-                data.push(
-                    &readings[4 * row..4 * row + 4],
-                    data.targets[target].clone().as_deref(),
-                    measurement,
-                )
-                .unwrap();
+                data.push(&readings[4 * row..4 * row + 4], data.targets[target].clone().as_deref(), measurement)
+                    .unwrap();
                 expected.push((shift, turn));
             }
             let session = Session::new(&robot, &data, &packed, false);

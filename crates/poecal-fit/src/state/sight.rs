@@ -16,8 +16,7 @@ pub struct Sight {
 impl Sight {
     /// True if two sights have all frames in common, though perhaps not the instrument's configuration.
     pub(crate) fn is_like(self, other: Sight) -> bool {
-        (self.station, self.target, self.from.is_some())
-            == (other.station, other.target, other.from.is_some())
+        (self.station, self.target, self.from.is_some()) == (other.station, other.target, other.from.is_some())
     }
 }
 

@@ -67,8 +67,7 @@ impl KinematicTree {
             // Without further configurations there are no rows in two.
             let may_be_shared = mount.is_none() && !data.further_readings().is_empty();
             let shared = if may_be_shared { in_two() } else { None };
-            shared
-                .map_or(InstrumentMount::On(body), |row| InstrumentMount::Target(named.unwrap_or(row.target)))
+            shared.map_or(InstrumentMount::On(body), |row| InstrumentMount::Target(named.unwrap_or(row.target)))
         };
         let instruments = (0..data.station_count()).map(stand).collect();
         let place = robot.places_of_targets();
@@ -97,14 +96,8 @@ impl KinematicTree {
 
     fn with_bodies(&self, instruments: Vec<InstrumentMount>, targets: Vec<Body>) -> Self {
         let (kinds, stands_on) = (self.kinds.clone(), self.stands_on.clone());
-        let mut tree = KinematicTree {
-            kinds,
-            stands_on,
-            instruments,
-            targets,
-            routes: Vec::new(),
-            of_sight: Vec::new(),
-        };
+        let mut tree =
+            KinematicTree { kinds, stands_on, instruments, targets, routes: Vec::new(), of_sight: Vec::new() };
         tree.find_routes();
         tree
     }

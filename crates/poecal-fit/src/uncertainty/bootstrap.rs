@@ -52,20 +52,16 @@ pub fn bootstrap(view: &FitView<'_>, seed: u64) -> Option<Bootstrap> {
     let units = clusters(&sample, count);
     let steps: Vec<Vec<f64>> = units
         .iter()
-        .map(|unit| {
-            linalg::cholesky_solve(&factor, &view.problem(unit.clone()).normal(view.estimate).gradient)
-        })
+        .map(|unit| linalg::cholesky_solve(&factor, &view.problem(unit.clone()).normal(view.estimate).gradient))
         .collect();
     let information = position_information(view, &rows);
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x0062_6f6f_7473);
-    let mean: Vec<f64> =
-        (0..n).map(|k| steps.iter().map(|step| step[k]).sum::<f64>() / units.len() as f64).collect();
+    let mean: Vec<f64> = (0..n).map(|k| steps.iter().map(|step| step[k]).sum::<f64>() / units.len() as f64).collect();
     let mut squares = 0.0;
     for _ in 0..DRAWINGS {
         let mut step = vec![0.0; n];
         for _ in 0..units.len() {
-            let drawn =
-                ((random::uniform_number(&mut generator) * units.len() as f64) as usize).min(units.len() - 1);
+            let drawn = ((random::uniform_number(&mut generator) * units.len() as f64) as usize).min(units.len() - 1);
             step.iter_mut().zip(&steps[drawn]).zip(&mean).for_each(|((sum, own), mean)| *sum += own - mean);
         }
         squares += quadratic(&information, &step);

@@ -56,11 +56,8 @@ pub(crate) fn clusters(view: &FitView<'_>, count: usize) -> Vec<Vec<u32>> {
     let spans = view.spans(view.rows);
     let is_many = view.rows.len() > MANY_ROWS;
     let configurations = if is_many { Vec::new() } else { view.session.data.configurations(view.rows) };
-    let whole = if is_many {
-        view.rows.chunks(1).collect()
-    } else {
-        configurations.iter().map(Vec::as_slice).collect()
-    };
+    let whole =
+        if is_many { view.rows.chunks(1).collect() } else { configurations.iter().map(Vec::as_slice).collect() };
     let mut clusters: Vec<Vec<&[u32]>> = vec![whole];
     while clusters.len() < count {
         // The largest is split; of equal ones the first, so that the order is defined.
@@ -73,11 +70,9 @@ pub(crate) fn clusters(view: &FitView<'_>, count: usize) -> Vec<Vec<u32>> {
         let first = clusters.swap_remove(largest);
         let here = view.spans(&first.iter().map(|rows| rows[0]).collect::<Vec<u32>>());
         let share = |joint: usize| if spans[joint] > 0.0 { here[joint] / spans[joint] } else { 0.0 };
-        let widest =
-            (0..here.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(b.cmp(&a))).unwrap_or(0);
+        let widest = (0..here.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(b.cmp(&a))).unwrap_or(0);
         let middle = first.len() / 2;
-        let mut values: Vec<(f64, &[u32])> =
-            first.iter().map(|&rows| (view.values(rows[0])[widest], rows)).collect();
+        let mut values: Vec<(f64, &[u32])> = first.iter().map(|&rows| (view.values(rows[0])[widest], rows)).collect();
         values.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
         let (low, high) = values.split_at(middle);
         clusters.extend([low, high].map(|half| half.iter().map(|&(_, rows)| rows).collect()));

@@ -60,8 +60,7 @@ pub fn discrepancy(
     let by_time = lag_one.and_then(|_| clusters::inflation(view, normal, clusters::in_order));
     let alike = neighbours::correlated_quantities(view);
     let structured = by_place.is_some() || lag_one.is_some();
-    let own =
-        ByQuantity::from_fn(|quantity| remainder.parts[quantity].attribute(structured || alike[quantity]));
+    let own = ByQuantity::from_fn(|quantity| remainder.parts[quantity].attribute(structured || alike[quantity]));
     let own = ByQuantity::from_fn(|quantity| match of_pictures(view, quantity) {
         Some(common) => remainder.parts[quantity].with_robot_part(common),
         None => own[quantity],
@@ -76,12 +75,11 @@ pub fn discrepancy(
     });
     let leading = settled[Quantity::Position];
     let scatter = by_place.unwrap_or(1.0).max(by_time.unwrap_or(1.0));
-    let blocks =
-        cross_validation.filter(|_| leading.attribution == Attribution::Robot).map_or(1.0, |found| {
-            let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
-            // The covariance of a sample's unknowns is larger, so that the same error is a smaller multiple of it.
-            (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
-        });
+    let blocks = cross_validation.filter(|_| leading.attribution == Attribution::Robot).map_or(1.0, |found| {
+        let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
+        // The covariance of a sample's unknowns is larger, so that the same error is a smaller multiple of it.
+        (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
+    });
     Discrepancy {
         scatter,
         extrapolation: scatter.max(blocks),

@@ -154,9 +154,7 @@ pub fn parts_to_leave_out(view: &FitView<'_>, most: usize, seed: u64) -> (Vec<u3
     let configurations = view.session.data.configurations(&sample).len();
     parts.extend(clusters(&few, NEIGHBOURHOODS.min(configurations / 4).max(1)));
     parts.extend(random_folds(&few, &sample, NEIGHBOURHOODS, seed).into_iter().map(|fold| fold.rows));
-    parts.retain(|rows| {
-        !rows.is_empty() && 2 * rows.len() < sample.len() && leaves_all_stations(view, &sample, rows)
-    });
+    parts.retain(|rows| !rows.is_empty() && 2 * rows.len() < sample.len() && leaves_all_stations(view, &sample, rows));
     (sample, parts)
 }
 
@@ -327,8 +325,7 @@ impl<'a> DowndatedEquations<'a> {
     fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
         let linkage = Linkage::new(&self.estimate);
         let of = |some: &[u32]| {
-            let motions =
-                motions(layout, &linkage, self.view.session.packed, &self.view.with_sights(some), 1);
+            let motions = motions(layout, &linkage, self.view.session.packed, &self.view.with_sights(some), 1);
             (&motions * covariance).dot(&motions)
         };
         rows.chunks(TOGETHER).map(of).sum()
@@ -357,11 +354,7 @@ const CLUSTERS: usize = 10;
 /// Mean loss of the rows, each predicted by the fit without its cluster of configurations (theory.md §9 (42)). `weights` has the weight of
 /// each row of the data in the fit; many rows are sampled. `None` if the rows without a cluster do not determine the unknowns.
 #[must_use]
-pub fn leave_clusters_out(
-    view: &FitView<'_>,
-    weights: &[f64],
-    loss: impl Fn(u32, &RowError) -> f64,
-) -> Option<f64> {
+pub fn leave_clusters_out(view: &FitView<'_>, weights: &[f64], loss: impl Fn(u32, &RowError) -> f64) -> Option<f64> {
     let rows = sample_rows(view.rows, SAMPLE);
     let sample = FitView { rows: &rows, ..*view };
     let whole = view.problem(rows.clone()).with_weights(weights).normal(view.estimate);

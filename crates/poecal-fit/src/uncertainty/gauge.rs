@@ -44,8 +44,7 @@ impl Gauge {
         // Combinations of the directions with effects of their own.
         let along = &all * &unseen;
         let (values, vectors) = linalg::symmetric_eigen(along.tr_mul(&along).as_slice(), unseen.ncols());
-        let seen: Vec<usize> =
-            (0..values.len()).filter(|&k| values[k] > NO_EFFECT * all.nrows() as f64).collect();
+        let seen: Vec<usize> = (0..values.len()).filter(|&k| values[k] > NO_EFFECT * all.nrows() as f64).collect();
         if seen.is_empty() {
             return None;
         }

@@ -24,8 +24,7 @@ pub use conditional::held_covariance;
 pub use correlation::Correlations;
 pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{
-    CrossValidation, FEWEST_VALIDATED, FoldErrors, OutsideRange, cross_validate, leave_clusters_out,
-    parts_to_leave_out,
+    CrossValidation, FEWEST_VALIDATED, FoldErrors, OutsideRange, cross_validate, leave_clusters_out, parts_to_leave_out,
 };
 pub use pattern::{JointPattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
@@ -78,12 +77,7 @@ impl Uncertainty {
     /// Covariance of a fit, theory.md §9 (39) and (39d), from its whitened normal equations and its unknowns. `None` if a number is not
     /// finite.
     #[must_use]
-    pub fn new(
-        view: &FitView<'_>,
-        layout: Layout,
-        normal: &NormalEquations,
-        found: &Discrepancy,
-    ) -> Option<Self> {
+    pub fn new(view: &FitView<'_>, layout: Layout, normal: &NormalEquations, found: &Discrepancy) -> Option<Self> {
         let gram = &normal.gram;
         let outside = (found.extrapolation > found.scatter)
             .then(|| extrapolate_covariance(gram, layout.dim(), view, found.extrapolation));
@@ -152,12 +146,7 @@ impl Uncertainty {
     /// Derivatives by the scaled unknowns of `Σ dᵀ p` over rows of joint values. p is the predicted position of a target in each, d a
     /// vector, both in the axes of the first station's device frame.
     #[must_use]
-    pub fn derivatives_along(
-        &self,
-        packed: &PackedValues,
-        target: usize,
-        vectors: &[Vector3<f64>],
-    ) -> Vec<f64> {
+    pub fn derivatives_along(&self, packed: &PackedValues, target: usize, vectors: &[Vector3<f64>]) -> Vec<f64> {
         let linkage = Linkage::new(&self.estimate);
         let mut sum = DVector::zeros(self.layout.dim());
         let rows: Vec<(usize, Sight)> = (0..vectors.len()).map(|row| in_first((row, target))).collect();
@@ -243,8 +232,7 @@ fn inflated_by(
     inflation: f64,
 ) -> Option<Vec<f64>> {
     let of = |variance: f64| {
-        let both: Vec<f64> =
-            gram.iter().zip(prior).map(|(measured, prior)| measured + variance * prior).collect();
+        let both: Vec<f64> = gram.iter().zip(prior).map(|(measured, prior)| measured + variance * prior).collect();
         let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
         covariance(&linalg::cholesky(&both, n, ROUNDING * largest)?, variance)
     };

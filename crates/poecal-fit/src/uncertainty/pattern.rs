@@ -45,8 +45,7 @@ pub fn strongest_pattern(view: &FitView<'_>, normal: &NormalEquations) -> Option
     let rows = sample_rows(view.rows, SAMPLE);
     let joints = view.session.robot.joints.len();
     let ranges = ranges(&view.session, view.rows);
-    let empty =
-        ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
+    let empty = ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
     let errors = view.session.errors(&rows, view.estimate);
     let rms_m = rms_m(&errors);
@@ -125,10 +124,9 @@ impl ShapeSums {
         let factor = linalg::cholesky(&self.gram, SHAPES, 1e-9 * scale)?;
         let amplitudes = linalg::cholesky_solve(&factor, &self.gradient);
         let explained: f64 = amplitudes.iter().zip(&self.gradient).map(|(a, g)| a * g).sum();
-        let mean_square: f64 = (0..SHAPES * SHAPES)
-            .map(|k| self.shapes[k] * amplitudes[k / SHAPES] * amplitudes[k % SHAPES])
-            .sum::<f64>()
-            / rows.max(1) as f64;
+        let mean_square: f64 =
+            (0..SHAPES * SHAPES).map(|k| self.shapes[k] * amplitudes[k / SHAPES] * amplitudes[k % SHAPES]).sum::<f64>()
+                / rows.max(1) as f64;
         Some((explained, mean_square.max(0.0).sqrt()))
     }
 }

@@ -67,8 +67,7 @@ impl PriorPart {
     /// Expected square for deviations of the size of the prior: the trace of `(I - P)²`.
     fn determined_part(&self, formal: &DMatrix<f64>) -> f64 {
         // Unknowns without information in the part are no directions of it.
-        let own: Vec<usize> =
-            (0..self.information.nrows()).filter(|&at| self.information[(at, at)] > 0.0).collect();
+        let own: Vec<usize> = (0..self.information.nrows()).filter(|&at| self.information[(at, at)] > 0.0).collect();
         let some = self.information.select_rows(&own).select_columns(&own);
         let (values, _) = linalg::symmetric_eigen(some.as_slice(), own.len());
         let largest = values.iter().fold(0.0, |most: f64, value| most.max(*value));
@@ -84,9 +83,8 @@ fn settle(parts: &mut [PriorPart], formal: &DMatrix<f64>) {
     for _ in 0..STEPS {
         for at in 0..parts.len() {
             let others = (0..parts.len()).filter(|&other| other != at);
-            let of_others: f64 = others
-                .map(|other| parts[other].size * parts[at].information.dot(&parts[other].covariance))
-                .sum();
+            let of_others: f64 =
+                others.map(|other| parts[other].size * parts[at].information.dot(&parts[other].covariance)).sum();
             let part = &mut parts[at];
             let own = part.found - part.of_noise - of_others;
             part.size = ((own + BELIEVED) / (determined[at] + BELIEVED)).clamp(LEAST, 1.0);

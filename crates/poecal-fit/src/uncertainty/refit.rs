@@ -38,8 +38,7 @@ impl Uncertainty {
         let (kept, places) = self.kept_parameters(refit);
         let parameters: Vec<Parameter> = kept.iter().chain(refit.free).copied().collect();
         let layout = Layout::new(parameters.clone(), self.length_m);
-        let estimate =
-            Estimate { base_from_axis: self.estimate.base_from_axis.clone(), ..refit.found.clone() };
+        let estimate = Estimate { base_from_axis: self.estimate.base_from_axis.clone(), ..refit.found.clone() };
         let session = refit.session.with_length(self.length_m);
         let problem = Problem::new(session, session.data.all_rows(), parameters, refit.scatter);
         let gram = problem.normal(&estimate).gram;
@@ -50,11 +49,8 @@ impl Uncertainty {
 
         // Information of the rows about the refitted unknowns, and the derivatives of these by the others.
         let count = anew.len();
-        let own: Vec<f64> = anew
-            .iter()
-            .flat_map(|&a| anew.iter().map(move |&b| (a, b)))
-            .map(|(a, b)| information(a, b))
-            .collect();
+        let own: Vec<f64> =
+            anew.iter().flat_map(|&a| anew.iter().map(move |&b| (a, b))).map(|(a, b)| information(a, b)).collect();
         let largest = (0..count).map(|k| own[k * count + k]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&own, count, SMALL * largest)?;
         let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
@@ -63,8 +59,7 @@ impl Uncertainty {
 
         let all = self.layout.dim();
         let refitted = |known: &[f64]| -> Option<Vec<f64>> {
-            let spread =
-                DMatrix::from_fn(places.len(), places.len(), |i, j| known[places[i] * all + places[j]]);
+            let spread = DMatrix::from_fn(places.len(), places.len(), |i, j| known[places[i] * all + places[j]]);
             let both = &follow * &spread;
             // The refit's own variance counts negatively: `N⁻¹`, less `2 N⁻¹` by its correlation with the scatter of the predicted rows.
             let last = &both * follow.transpose() - &inverse;
@@ -106,12 +101,10 @@ impl Uncertainty {
                     frame.target = target;
                     Parameter::TargetFrame(frame)
                 }),
-                other @ (Parameter::DeviceFrame(_)
-                | Parameter::RangeUnknown(_)
-                | Parameter::ClockUnknown(_)) => (!is_refitted(&other)).then_some(other),
-                other @ (Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_)) => {
-                    Some(other)
+                other @ (Parameter::DeviceFrame(_) | Parameter::RangeUnknown(_) | Parameter::ClockUnknown(_)) => {
+                    (!is_refitted(&other)).then_some(other)
                 }
+                other @ (Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_)) => Some(other),
             };
             if let Some(parameter) = renumbered {
                 kept.push(parameter);

@@ -84,8 +84,7 @@ impl KindVariance {
     /// repeated.
     fn lacks_fit(&self) -> Option<bool> {
         let (within, freedom) = self.within;
-        (freedom >= REPEATED)
-            .then(|| self.mean_square > within * f_quantile(CHANCE, self.freedom.max(1.0), freedom))
+        (freedom >= REPEATED).then(|| self.mean_square > within * f_quantile(CHANCE, self.freedom.max(1.0), freedom))
     }
 
     /// Variance components of residuals, of which a part with this standard deviation is the robot's, and the rest the instrument's.
@@ -187,13 +186,11 @@ struct ResidualSums {
 impl ResidualSums {
     /// Adds the rows of one subject ([`Dataset::subject`](poecal_model::measurement::Dataset::subject)) in one configuration.
     fn add(&mut self, quantity: Quantity, rows: &[RowDeviation]) {
-        let mut rows: Vec<&RowDeviation> =
-            rows.iter().filter(|row| !row.error.part(quantity).is_empty()).collect();
+        let mut rows: Vec<&RowDeviation> = rows.iter().filter(|row| !row.error.part(quantity).is_empty()).collect();
         // Rows repeat each other if they have the same components.
         while let Some(first) = rows.first() {
             let kind = first.error.measured_components(quantity);
-            let (own, rest) =
-                rows.into_iter().partition(|row| row.error.measured_components(quantity) == kind);
+            let (own, rest) = rows.into_iter().partition(|row| row.error.measured_components(quantity) == kind);
             let own: Vec<&RowDeviation> = own;
             let vectors: Vec<([Vector3<f64>; 2], f64)> = own
                 .iter()
@@ -228,11 +225,8 @@ impl ResidualSums {
         let repeats = self.components as f64 / self.groups.max(1) as f64;
         let whole = (self.components as f64 - determined).max(1.0);
         let is_repeated = within_freedom > 0.0;
-        let mean_square = if is_repeated {
-            (self.squares - self.within).max(0.0) / freedom
-        } else {
-            self.squares / freedom
-        };
+        let mean_square =
+            if is_repeated { (self.squares - self.within).max(0.0) / freedom } else { self.squares / freedom };
         let variance = self.variances / self.components.max(1) as f64;
         let share = self.configurations as f64 / self.groups.max(1) as f64;
         KindVariance {
@@ -243,10 +237,7 @@ impl ResidualSums {
             repeats,
             // The ratio is of all rows: noise alone explains those within configurations as well as the others.
             stated: (stated && self.components > 0).then(|| {
-                (
-                    variance,
-                    if is_repeated { self.between_configurations(freedom) } else { self.whitened / whole },
-                )
+                (variance, if is_repeated { self.between_configurations(freedom) } else { self.whitened / whole })
             }),
             rounded: 0.0,
         }
@@ -273,8 +264,7 @@ pub fn remainder(view: &FitView<'_>, normal: &NormalEquations, layout: &Layout) 
     let lengths = total_of(&sums, Unit::Metre);
     let left_m = (3.0 * lengths.squares / lengths.components.max(1) as f64).sqrt();
     let rounding = Rounding::from_session(&view.session, left_m);
-    let by_rotations =
-        share * determined_by_rotations(view, normal, layout, effective_unknowns, &angles, total);
+    let by_rotations = share * determined_by_rotations(view, normal, layout, effective_unknowns, &angles, total);
     let in_sample = share * effective_unknowns;
     let variance = {
         let all = || sums.iter().map(|(_, sums)| sums);
@@ -368,8 +358,8 @@ fn determined_by_rotations(
     if rotation.components == 0 {
         return 0.0;
     }
-    let in_proportion = turned
-        + (determined - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
+    let in_proportion =
+        turned + (determined - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
     // Terms of joints are determined by both alike.
     if view.rows.len() > FEW || view.prior.weight.is_some() {
         return in_proportion;
@@ -395,13 +385,8 @@ mod tests {
     /// and two are assumed.
     #[test]
     fn what_is_the_robots_varies_with_the_configuration() {
-        let sums = ResidualSums {
-            squares: 60.0,
-            components: 60,
-            groups: 60,
-            configurations: 20,
-            ..ResidualSums::default()
-        };
+        let sums =
+            ResidualSums { squares: 60.0, components: 60, groups: 60, configurations: 20, ..ResidualSums::default() };
         let part = sums.part(30.0, false);
         assert_eq!((part.freedom, part.attribute(false).freedom), (30.0, 12.0));
     }

@@ -28,8 +28,7 @@ pub(crate) fn correlation(view: &FitView<'_>) -> Option<f64> {
         let before = last.insert(view.session.data.subject(row), (at, observation.source.file));
         let Some((before, file)) = before else { continue };
         // Rows of one configuration share the robot's error.
-        let is_elsewhere =
-            view.values(rows[before]).iter().zip(view.values(row)).any(|(a, b)| (a - b).abs() > 1e-3);
+        let is_elsewhere = view.values(rows[before]).iter().zip(view.values(row)).any(|(a, b)| (a - b).abs() > 1e-3);
         if file != observation.source.file || !is_elsewhere {
             continue;
         }
@@ -54,8 +53,7 @@ fn is_ordered(view: &FitView<'_>, rows: &[u32]) -> bool {
         let value = |row: &u32| view.values(*row)[joint];
         let mean = rows.iter().map(value).sum::<f64>() / count;
         let squares: f64 = rows.iter().map(|row| (value(row) - mean).powi(2)).sum();
-        let products: f64 =
-            rows.windows(2).map(|pair| (value(&pair[0]) - mean) * (value(&pair[1]) - mean)).sum();
+        let products: f64 = rows.windows(2).map(|pair| (value(&pair[0]) - mean) * (value(&pair[1]) - mean)).sum();
         squares > 0.0 && products > ORDERED * squares
     })
 }

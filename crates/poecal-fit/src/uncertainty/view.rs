@@ -55,12 +55,7 @@ impl PriorInformation {
     /// No information of `n` unknowns.
     #[must_use]
     pub fn zero(n: usize) -> Self {
-        PriorInformation {
-            normal: NormalEquations::new(n),
-            is_fitted: false,
-            parts: Vec::new(),
-            weight: None,
-        }
+        PriorInformation { normal: NormalEquations::new(n), is_fitted: false, parts: Vec::new(), weight: None }
     }
 
     /// The same information with directions that are a choice, such as motions of the base without effect: as if they were known.

@@ -10,8 +10,7 @@ use poecal_model::simulate::{PictureSimulation, SimulatedPictures, Simulation, e
 use poecal_numerics::solve::LeastSquares as _;
 
 fn photograph_robot(in_hand: bool, noise_px: f64) -> SimulatedPictures {
-    let session =
-        Simulation { count: 10, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
+    let session = Simulation { count: 10, error_rotation_rad: 2e-3, error_position_m: 1e-3, ..Simulation::default() };
     let usual = PictureSimulation::with_usual_camera(session, in_hand);
     let distortion = Distortion::Brown([-0.1, 0.02, 1e-4, 1e-4, 0.0, 0.0, 0.0, 0.0]);
     let lens = Lens { distortion, ..usual.lens };
@@ -32,24 +31,16 @@ fn numbers(session: Session<'_>, unknowns: &[PictureUnknown]) -> PictureUnknowns
     PictureUnknowns::new(&pictures.cameras, &pictures.boards, unknowns)
 }
 
-fn bundle<'a>(
-    session: Session<'a>,
-    start: &Estimate,
-    unknowns: &[PictureUnknown],
-    common: CommonError,
-) -> Bundle<'a> {
+fn bundle<'a>(session: Session<'a>, start: &Estimate, unknowns: &[PictureUnknown], common: CommonError) -> Bundle<'a> {
     let frames = [
         Parameter::DeviceFrame(DeviceFrame::new(0, start.device_from_base.translation)),
         Parameter::TargetFrame(TargetFrame::new(0)),
     ];
     let free = frames.into_iter().chain(screw_axes(start.kinds())).collect();
-    Bundle::new(session, &session.data.all_rows(), free, numbers(session, unknowns))
-        .unwrap()
-        .with_common(common)
+    Bundle::new(session, &session.data.all_rows(), free, numbers(session, unknowns)).unwrap().with_common(common)
 }
 
-const ALL: [PictureUnknown; 3] =
-    [PictureUnknown::Lens(0), PictureUnknown::Board(0), PictureUnknown::Markers(0)];
+const ALL: [PictureUnknown; 3] = [PictureUnknown::Lens(0), PictureUnknown::Board(0), PictureUnknown::Markers(0)];
 
 #[test]
 fn the_gradient_is_that_of_differences() {
@@ -148,8 +139,7 @@ fn a_bundle_finds_the_lens() {
     let start = start(&made);
     let lens = [PictureUnknown::Lens(0)];
     let numbers = numbers(session, &lens);
-    let found =
-        bundle(session, &start, &lens, CommonError::NONE).solve(&start, &DVector::zeros(numbers.count()));
+    let found = bundle(session, &start, &lens, CommonError::NONE).solve(&start, &DVector::zeros(numbers.count()));
     let (cameras, _) = numbers.apply_step(&found.numbers);
     let off = (cameras[0].lens.focal_px[0] - truth.focal_px[0]).abs();
     println!("cost {:.3}, {} passes, focal length off by {off:.3} px", found.cost, found.passes);

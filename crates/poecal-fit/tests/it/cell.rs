@@ -10,8 +10,7 @@ use poecal_fit::parameters::{
 };
 use poecal_fit::problem::Problem;
 use poecal_fit::state::{
-    ClockChange, ClockTerm, Estimate, Linkage, PackedValues, RangeModel, RangeTerm, RowChain, Session,
-    nominal_estimate,
+    ClockChange, ClockTerm, Estimate, Linkage, PackedValues, RangeModel, RangeTerm, RowChain, Session, nominal_estimate,
 };
 use poecal_model::measurement::{Dataset, Measurement, NUMBERS, Noise, Observation};
 use poecal_model::robot::{
@@ -110,11 +109,7 @@ fn eye_in_hand(kinds: &str) -> Robot {
     let mut generator = ChaCha8Rng::seed_from_u64(12);
     let last = Body::Link(kinds.len() - 1);
     robot.instruments.push(Mount { name: "camera".to_owned(), body: last, pose: place(&mut generator, 0.1) });
-    robot.mounted.push(Mount {
-        name: "board".to_owned(),
-        body: Body::Base,
-        pose: place(&mut generator, 0.8),
-    });
+    robot.mounted.push(Mount { name: "board".to_owned(), body: Body::Base, pose: place(&mut generator, 0.8) });
     robot
 }
 
@@ -157,9 +152,8 @@ fn cells() -> Vec<Cell> {
         all.push(cell("eye in hand", eye_in_hand(kinds), camera(POSE), g(kinds) + 6));
         all.push(cell("two configurations", chain(kinds, 3), apart(POSE), g(kinds)));
     }
-    let two_hands = |of: &'static str| {
-        vec![sees(Some(of), Some("left_hand"), POSE), sees(Some(of), Some("right_hand"), POSE)]
-    };
+    let two_hands =
+        |of: &'static str| vec![sees(Some(of), Some("left_hand"), POSE), sees(Some(of), Some("right_hand"), POSE)];
     // The chest is on the torso: joints below it cancel. The head's own joint is seen.
     all.push(cell("chest sees both hands", torso(), two_hands("chest"), 48 + 12));
     all.push(cell("head sees both hands", torso(), two_hands("eyes"), 52 + 12));
@@ -225,9 +219,8 @@ impl Measured {
             let seen = cell.sees[row % cell.sees.len()].seen;
             data.observations[row].measurement = seen(&Pose::new(turn * chain.target.rotation, position));
         }
-        let mut free: Vec<Parameter> = (1..data.station_count())
-            .map(|station| device(&data, station, Vector3::new(0.1, -0.2, 0.3)))
-            .collect();
+        let mut free: Vec<Parameter> =
+            (1..data.station_count()).map(|station| device(&data, station, Vector3::new(0.1, -0.2, 0.3))).collect();
         free.extend(screw_axes(estimate.kinds()));
         let targets = data.target_freedoms(&data.all_rows()).into_iter().enumerate();
         free.extend(targets.map(|(target, freedom)| {
@@ -256,8 +249,7 @@ fn deviate_cell(cell: &Cell) -> Cell {
     let weights = gravity.weights.len();
     robot.gravity = Some(gravity);
     let statics = Statics::new(&robot).unwrap();
-    let harmonics =
-        (1..3).flat_map(|order| [TermKind::Sine, TermKind::Cosine].map(|it| it.with_number(order)));
+    let harmonics = (1..3).flat_map(|order| [TermKind::Sine, TermKind::Cosine].map(|it| it.with_number(order)));
     let mut terms = Vec::new();
     for (joint, it) in robot.joints.iter().enumerate() {
         let sags = (0..weights).filter(|&weight| statics.is_carried(joint, weight));
@@ -275,9 +267,7 @@ fn deviate_cell(cell: &Cell) -> Cell {
 fn with_terms(made: &Measured, terms: impl Iterator<Item = (usize, Term)>) -> Vec<Parameter> {
     let kinds = made.estimate.kinds();
     let mut free = made.free.clone();
-    free.extend(
-        terms.map(|(joint, term)| Parameter::ValueTerm(ValueTerm { joint, kind: kinds[joint], term })),
-    );
+    free.extend(terms.map(|(joint, term)| Parameter::ValueTerm(ValueTerm { joint, kind: kinds[joint], term })));
     if made.estimate.tree.shared_target(0).is_none() {
         free.insert(0, device(&made.data, 0, Vector3::new(0.2, 0.1, 0.0)));
     }
@@ -293,8 +283,7 @@ fn sensitivities_of_every_way_are_those_of_differences() {
         // Terms of every joint's value, at coefficients that are not zero.
         let mut estimate = made.estimate.clone();
         let joints = 0..made.robot.joints.len();
-        let terms: Vec<_> =
-            joints.flat_map(|joint| Term::unnumbered().map(move |term| (joint, term))).collect();
+        let terms: Vec<_> = joints.flat_map(|joint| Term::unnumbered().map(move |term| (joint, term))).collect();
         for &(joint, term) in &terms {
             let k = usize::from(term == Term::RATIO);
             *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
@@ -350,8 +339,7 @@ fn sensitivities_of_clocks_are_those_of_differences() {
         let mut generator = ChaCha8Rng::seed_from_u64(78);
         let width = made.data.reading_names().len();
         for row in 0..made.data.len() {
-            let rates: Vec<f64> =
-                (0..width).map(|_| 2.0 * random::uniform_number(&mut generator) - 1.0).collect();
+            let rates: Vec<f64> = (0..width).map(|_| 2.0 * random::uniform_number(&mut generator) - 1.0).collect();
             // Every fifth row was measured at rest.
             if row % 5 != 4 {
                 made.data.state_motion(row, &rates, row as f64 / 24.0 - 0.5);
@@ -360,10 +348,8 @@ fn sensitivities_of_clocks_are_those_of_differences() {
         made.packed = PackedValues::from_dataset(&made.robot, &made.data);
         let mut estimate = made.estimate.clone();
         let stations = 0..made.data.station_count();
-        estimate.clocks = stations
-            .clone()
-            .map(|at| ClockChange { lag_s: 0.02 + at as f64 / 100.0, drift: -0.03 })
-            .collect();
+        estimate.clocks =
+            stations.clone().map(|at| ClockChange { lag_s: 0.02 + at as f64 / 100.0, drift: -0.03 }).collect();
         *estimate.coefficient_mut(0, Term::RATIO) = 0.02;
         let mut free = with_terms(&made, [(0, Term::RATIO)].into_iter());
         let clocks = stations.flat_map(|station| ClockTerm::ALL.map(|term| ClockUnknown { station, term }));
@@ -413,13 +399,8 @@ fn ranks_are_those_of_the_closed_form() {
         let problem = made.problem(made.free.clone());
         let rows = made.data.all_rows();
         let session = Session::new(&made.robot, &made.data, &made.packed, false).with_length(0.5);
-        let setup = AnalysisSetup {
-            session,
-            rows: &rows,
-            estimate: &made.estimate,
-            layout: problem.layout(),
-            noise: NOISE,
-        };
+        let setup =
+            AnalysisSetup { session, rows: &rows, estimate: &made.estimate, layout: problem.layout(), noise: NOISE };
         let found = identifiability(&setup, &problem.normal(&made.estimate).gram, 1.0);
         println!("{:22} {:?}: rank {} of {}", cell.name, made.robot.joints.len(), found.rank, problem.dim());
         for direction in found.unidentifiable.iter().chain(&found.structural) {
@@ -469,8 +450,7 @@ fn ranks_of_what_bearings_do_are_those_of_the_closed_form() {
             let gram = problem.normal(&made.estimate).gram;
             // Columns of length 1: singular values are then of order 1, or rounding.
             let scale = |k: usize| gram[k * n + k].sqrt().max(1e-300);
-            let scaled =
-                nalgebra::DMatrix::from_fn(n, n, |a, b| gram[a.min(b) * n + a.max(b)] / scale(a) / scale(b));
+            let scaled = nalgebra::DMatrix::from_fn(n, n, |a, b| gram[a.min(b) * n + a.max(b)] / scale(a) / scale(b));
             let mut values: Vec<f64> = scaled.symmetric_eigenvalues().iter().copied().collect();
             values.sort_by(|a, b| b.total_cmp(a));
             let rank = values.iter().filter(|value| **value > 1e-10).count();
@@ -495,12 +475,7 @@ fn ranks_of_what_bearings_do_are_those_of_the_closed_form() {
 #[test]
 fn what_joints_turn_is_told_from_their_screws() {
     for (words, function) in [("poses", POSE), ("points", POINT)] {
-        let cell = Cell {
-            name: "chain",
-            robot: chain("rrrrrr", 43),
-            sees: vec![sees(None, None, function)],
-            rank: 0,
-        };
+        let cell = Cell { name: "chain", robot: chain("rrrrrr", 43), sees: vec![sees(None, None, function)], rank: 0 };
         let made = Measured::new(&cell, 300, 0.0);
         let own = ["ratio", "sin1", "cos1", "sin2", "cos2"].map(|name| name.parse().unwrap());
         let terms: Vec<(usize, Term)> = (0..6).flat_map(|joint| own.map(|term| (joint, term))).collect();

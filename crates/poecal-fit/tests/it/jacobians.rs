@@ -48,8 +48,7 @@ const JOINT_VALUES: [f64; 4] = [0.0, 1e-8, 0.9, PI - 1e-8];
 const RESIDUAL_ANGLES: [f64; 4] = [0.0, 1e-8, 1.1, PI - 1e-3];
 
 fn robot() -> Robot {
-    let turning =
-        |name: &str, w: [f64; 3], q: [f64; 3]| Joint::revolute(name, Screw::revolute(&w.into(), &q.into()));
+    let turning = |name: &str, w: [f64; 3], q: [f64; 3]| Joint::revolute(name, Screw::revolute(&w.into(), &q.into()));
     let joints = vec![
         turning("a", [0.1, -0.2, 0.9], [0.05, 0.1, 0.0]),
         Joint::prismatic("b", Screw::prismatic(&Vector3::new(0.7, 0.2, -0.4))),
@@ -79,21 +78,12 @@ struct Row {
 
 impl Row {
     /// A measurement from one of the stations, with a shift and a turn from the estimate's prediction.
-    fn new(
-        robot: &Robot,
-        estimate: &Estimate,
-        readings: &[f64],
-        (make, station): (Measure, usize),
-        turn: f64,
-    ) -> Self {
+    fn new(robot: &Robot, estimate: &Estimate, readings: &[f64], (make, station): (Measure, usize), turn: f64) -> Self {
         let packed = PackedValues::new(robot, readings, readings.len());
         let mut chain = RowChain::default();
         chain.evaluate(&Linkage::new(estimate), &packed, 0, Sight { station, target: 0, from: None });
         let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turn));
-        let seen = Pose::new(
-            turn * chain.target.rotation,
-            chain.target.translation + Vector3::new(0.02, -0.01, 0.03),
-        );
+        let seen = Pose::new(turn * chain.target.rotation, chain.target.translation + Vector3::new(0.02, -0.01, 0.03));
         let mut data = Dataset::new(robot.reading_names());
         data.push(readings, None, make(seen)).unwrap();
         data.stations = vec![Some("first".into()), Some("second".into())];
@@ -251,8 +241,7 @@ fn hessian_error_from(make: Measure, station: usize, turn: f64) -> f64 {
     let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, station), turn);
     // A position and a frame of the same target are not both free in any problem: their shifts are one and the same.
     let free = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
-    let free =
-        free.filter(|it| !matches!(it, Parameter::TargetPlace(_)) && it.model().has_curvature()).collect();
+    let free = free.filter(|it| !matches!(it, Parameter::TargetPlace(_)) && it.model().has_curvature()).collect();
     let problem = row.problem(free);
     let (gram, curvature) = (problem.normal(&estimate).gram, problem.curvature(&estimate).unwrap());
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

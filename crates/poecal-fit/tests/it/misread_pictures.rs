@@ -9,13 +9,8 @@ use poecal_model::simulate::{PictureSimulation, SimulatedPictures, Simulation, e
 use poecal_testing::trials::trials;
 
 fn photograph_robot(seed: u64) -> SimulatedPictures {
-    let session = Simulation {
-        count: 20,
-        seed,
-        error_rotation_rad: 5e-3,
-        error_position_m: 2e-3,
-        ..Simulation::default()
-    };
+    let session =
+        Simulation { count: 20, seed, error_rotation_rad: 5e-3, error_position_m: 2e-3, ..Simulation::default() };
     let common = CommonError { shift_m: 2e-4, turn_rad: 3e-4, ..CommonError::default() };
     let simulated =
         PictureSimulation { common, ..PictureSimulation::with_usual_camera(session, seed.is_multiple_of(2)) };
@@ -23,11 +18,7 @@ fn photograph_robot(seed: u64) -> SimulatedPictures {
 }
 
 /// The same pictures with the readings of others and with other corners.
-fn change_pictures(
-    data: &Dataset,
-    reading: impl Fn(usize) -> usize,
-    corner: impl Fn(&Corner) -> Corner,
-) -> Dataset {
+fn change_pictures(data: &Dataset, reading: impl Fn(usize) -> usize, corner: impl Fn(&Corner) -> Corner) -> Dataset {
     let mut found = Dataset::new(data.reading_names().to_vec());
     found.pictures.cameras.clone_from(&data.pictures.cameras);
     found.pictures.boards.clone_from(&data.pictures.boards);
@@ -60,11 +51,9 @@ fn misread_pictures_are_named_and_others_are_not() {
         };
         let words = settle_and_describe(change_pictures(&made.data, |at| at, flip), &made.nominal);
         mirrored += usize::from(words.contains("the pictures look mirrored"));
-        let words =
-            settle_and_describe(change_pictures(&made.data, |at| (at + 1) % 20, |it| *it), &made.nominal);
+        let words = settle_and_describe(change_pictures(&made.data, |at| (at + 1) % 20, |it| *it), &made.nominal);
         before += usize::from(words.contains("the readings of the picture before it"));
-        let words =
-            settle_and_describe(change_pictures(&made.data, |at| (at + 19) % 20, |it| *it), &made.nominal);
+        let words = settle_and_describe(change_pictures(&made.data, |at| (at + 19) % 20, |it| *it), &made.nominal);
         after += usize::from(words.contains("the readings of the picture after it"));
     }
     println!(

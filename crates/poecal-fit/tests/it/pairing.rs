@@ -112,10 +112,7 @@ fn wrong_orders_of_equal_counts_are_named() {
             });
         }
     }
-    println!(
-        "of {all}: right {}, shifted {}, reversed {}, two exchanged {}",
-        named[0], named[1], named[2], named[3]
-    );
+    println!("of {all}: right {}, shifted {}, reversed {}, two exchanged {}", named[0], named[1], named[2], named[3]);
     assert!(named.iter().all(|it| it * 100 >= 99 * all), "{named:?}");
 }
 

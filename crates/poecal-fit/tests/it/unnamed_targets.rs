@@ -24,14 +24,11 @@ fn statements(seen: impl Fn(usize, Pose) -> Vec<Vector3<f64>>) -> Vec<String> {
 #[test]
 fn targets_without_names_are_told_by_their_distances() {
     let places = [Vector3::zeros(), Vector3::new(0.06, 0.0, 0.0), Vector3::new(0.0, 0.08, 0.0)];
-    let found =
-        statements(|_, pose| places.iter().map(|place| pose.translation + pose.rotation * place).collect());
+    let found = statements(|_, pose| places.iter().map(|place| pose.translation + pose.rotation * place).collect());
     assert_eq!(
         found,
-        [
-            "TargetsUnnamed: each of 30 configurations has rows at 3 places that are always 60.0 to 100 mm apart \
-             (such as row 1 and row 2), as 3 targets are: add a column `target` that names which one each row saw"
-        ]
+        ["TargetsUnnamed: each of 30 configurations has rows at 3 places that are always 60.0 to 100 mm apart \
+             (such as row 1 and row 2), as 3 targets are: add a column `target` that names which one each row saw"]
     );
 }
 

@@ -41,9 +41,7 @@ pub(crate) fn for_rows(
             let sigma = noise[channel.quantity];
             *e /= sigma;
             jacobian.extend(
-                twists
-                    .iter()
-                    .map(|(v, w)| (Vector3::new(a, b, c).dot(v) + Vector3::new(p, q, r).dot(w)) / sigma),
+                twists.iter().map(|(v, w)| (Vector3::new(a, b, c).dot(v) + Vector3::new(p, q, r).dot(w)) / sigma),
             );
         }
         each(row, &jacobian, &residual[..seen.dim()]);
@@ -60,8 +58,8 @@ fn as_read(problem: &Problem<'_>, state: &Estimate, chain: &RowChain, twists: &m
     let place = chain.target.translation;
     let direction = place.normalize();
     let along = direction * direction.transpose();
-    let moved = Matrix3::identity() * (1.0 + range.scale)
-        + (Matrix3::identity() - along) * (range.zero_m / place.norm());
+    let moved =
+        Matrix3::identity() * (1.0 + range.scale) + (Matrix3::identity() - along) * (range.zero_m / place.norm());
     for (parameter, places) in problem.layout().parameters() {
         if !matches!(parameter, Parameter::RangeUnknown(_)) {
             places.iter().for_each(|&(at, _)| twists[at].0 = moved * twists[at].0);

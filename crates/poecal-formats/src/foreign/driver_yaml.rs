@@ -25,9 +25,8 @@ const UR: [(&str, &str); 6] = [
 
 pub(crate) fn read(text: &str, path: &Path) -> Result<LinkTree> {
     let values = values(text, path, EXPECTED)?;
-    let refuse = |found: String| {
-        Err(ErrorKind::Model.error(format!("found {found}, expected {EXPECTED}")).in_file(path))
-    };
+    let refuse =
+        |found: String| Err(ErrorKind::Model.error(format!("found {found}, expected {EXPECTED}")).in_file(path));
     let Some(first) = values.first() else { return refuse("no values".to_owned()) };
     // Franka's numbers are nested more deeply, below no other key.
     let is_franka = first.keys.get(1).is_some_and(|key| key == "kinematic");
@@ -66,8 +65,7 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<LinkTree> {
         );
         return Err(value.error(path, message));
     }
-    let mut joints =
-        keys.iter().map(|key| origin(known.get(key.as_str()), path, key)).collect::<Result<Vec<_>>>()?;
+    let mut joints = keys.iter().map(|key| origin(known.get(key.as_str()), path, key)).collect::<Result<Vec<_>>>()?;
     if keys.first().is_some_and(|key| key == UR[0].0) {
         return Ok(ur_arm(&AxisFrames { joints, last_from_tip: Pose::identity() }));
     }
@@ -117,13 +115,7 @@ pub(crate) fn ur_arm(frames: &AxisFrames) -> LinkTree {
 }
 
 /// A serial arm of joints that rotate about z.
-fn serial_links(
-    name: &str,
-    base: &str,
-    names: &[(String, String)],
-    tip: &str,
-    frames: &AxisFrames,
-) -> LinkTree {
+fn serial_links(name: &str, base: &str, names: &[(String, String)], tip: &str, frames: &AxisFrames) -> LinkTree {
     let mut links = LinkTree::new(name);
     let mut parent = links.add(base, None);
     for ((joint, link), frame) in names.iter().zip(&frames.joints) {

@@ -47,8 +47,7 @@ pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
         })
     };
     let (a, d, alpha) = (nominal("a")?, nominal("d")?, nominal("alpha")?);
-    if let Some(line) =
-        lines.iter().find(|line| line.section == "mounting" && line.key == "calibration_status")
+    if let Some(line) = lines.iter().find(|line| line.section == "mounting" && line.key == "calibration_status")
         && line.value == "0"
     {
         return Err(ErrorKind::Model.error("found calibration_status = 0, which says that the controller has no calibration, expected 1 or 2: leave the file out and \
@@ -62,11 +61,7 @@ pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
         DELTAS.into_iter().zip(&found).filter_map(|(key, it)| it.is_none().then_some(key)).collect();
     if !missing.is_empty() && missing.len() < DELTAS.len() {
         return Err(ErrorKind::Model
-            .error(format!(
-                "found no {} in [mounting], expected all of {}",
-                missing.join(", "),
-                DELTAS.join(", ")
-            ))
+            .error(format!("found no {} in [mounting], expected all of {}", missing.join(", "), DELTAS.join(", ")))
             .in_file(path));
     }
     let deltas = found.map(Option::unwrap_or_default);

@@ -98,8 +98,7 @@ fn check_joint_names(context: &Context, file: &RobotTomlFile) -> Result<()> {
     for joint in &file.joint {
         context.name(&joint.name, "the joint")?;
         if !names.insert(joint.name()) {
-            let message =
-                format!("found a second joint named `{}`, expected unique joint names", joint.name());
+            let message = format!("found a second joint named `{}`, expected unique joint names", joint.name());
             return Err(context.error(joint.name.span(), message));
         }
     }
@@ -111,8 +110,7 @@ fn from_screws(context: &Context, file: &RobotTomlFile, name: &str) -> Result<Ro
         format!("found [{key}] in a model of screws, expected [home] only: it holds the tip's pose")
     })?;
     let Some(home) = &file.home else {
-        let message =
-            "found no [home], expected it: the tip's pose in the base at zero joint values".to_owned();
+        let message = "found no [home], expected it: the tip's pose in the base at zero joint values".to_owned();
         return Err(context.error(0..0, message));
     };
     let home = context.pose(home.get_ref(), "[home]")?;
@@ -186,9 +184,8 @@ fn joint_of_line(
     }
     // The vector is scaled first, so that tiny numbers do not vanish when squared.
     let axis = axis / axis.amax();
-    let point = point
-        .map(|point| context.metres(*point.get_ref(), point.span(), &of).map(Vector3::from))
-        .transpose()?;
+    let point =
+        point.map(|point| context.metres(*point.get_ref(), point.span(), &of).map(Vector3::from)).transpose()?;
     let screw = kind.screw(&axis, &point.unwrap_or_default());
     Ok(joint_of_screw(name, kind, screw, point))
 }
@@ -210,9 +207,7 @@ fn screw_of_table(
     };
     let v = Vector3::from(v);
     if kind == JointKind::Prismatic && w != Vector3::zeros() {
-        return error(format!(
-            "{of} has an angular part w, expected w = [0, 0, 0] since the joint is prismatic"
-        ));
+        return error(format!("{of} has an angular part w, expected w = [0, 0, 0] since the joint is prismatic"));
     }
     let (part, length) = match kind {
         JointKind::Revolute => ("w", w.norm()),
@@ -235,16 +230,9 @@ fn screw_of_table(
     Screw::project(&Twist::new(v, w)).map_or_else(|| error(format!("{of} is zero, expected an axis")), Ok)
 }
 
-fn from_dh(
-    context: &Context,
-    file: &RobotTomlFile,
-    name: &str,
-    convention: DhTableConvention,
-) -> Result<Robot> {
+fn from_dh(context: &Context, file: &RobotTomlFile, name: &str, convention: DhTableConvention) -> Result<Robot> {
     context.refuse([("home", span(&file.home))], |key| {
-        format!(
-            "found [{key}] in a DH model, expected [base] and [tool]: the home pose follows from the table"
-        )
+        format!("found [{key}] in a DH model, expected [base] and [tool]: the home pose follows from the table")
     })?;
     let rows = file.joint.iter().map(|joint| dh_row(context, joint)).collect::<Result<Vec<_>>>()?;
     let pose = |table: &Option<Spanned<PoseTable>>, of| match table {
@@ -257,11 +245,9 @@ fn from_dh(
 
 fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
     let of = format!("joint `{}`", table.name());
-    let screw =
-        [("screw", span(&table.screw)), ("point", span(&table.point)), ("direction", span(&table.direction))];
-    context.refuse(screw, |key| {
-        format!("{of} has `{key}`, expected a, alpha, d and theta: the model is a DH table")
-    })?;
+    let screw = [("screw", span(&table.screw)), ("point", span(&table.point)), ("direction", span(&table.direction))];
+    context
+        .refuse(screw, |key| format!("{of} has `{key}`, expected a, alpha, d and theta: the model is a DH table"))?;
     let length = |value: &Option<Spanned<f64>>| match value {
         Some(value) => context.metres([*value.get_ref()], value.span(), &of).map(|[only]| only),
         None => Ok(0.0),
@@ -291,8 +277,7 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<JointLimits>> 
     let [lower, upper] = context.check_numbers(values, limits.span(), &of)?;
     if lower >= upper {
         let [lower, upper] = limits.get_ref();
-        let message =
-            format!("found {of} from {lower} to {upper}, expected [lower, upper] with lower < upper");
+        let message = format!("found {of} from {lower} to {upper}, expected [lower, upper] with lower < upper");
         return Err(context.error(limits.span(), message));
     }
     Ok(Some(JointLimits { lower, upper }))
@@ -302,8 +287,7 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<JointLimits>> 
 fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
     let find = |name: &str| tables.get(name).copied();
     let follows = |name: &str| -> Result<Option<Reading>> {
-        let Some((follower, mimic)) = find(name).and_then(|joint| Some((joint, joint.mimic.as_ref()?)))
-        else {
+        let Some((follower, mimic)) = find(name).and_then(|joint| Some((joint, joint.mimic.as_ref()?))) else {
             return Ok(None);
         };
         let table = mimic.get_ref();

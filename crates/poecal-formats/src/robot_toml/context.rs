@@ -57,29 +57,18 @@ impl Context<'_> {
                 return Err(self.error(span, format!("found {number} in {of}, expected finite numbers")));
             }
             if number.abs() > LARGEST_NUMBER {
-                let message =
-                    format!("found {number:?} m or rad in {of}, expected numbers below 1e6 m or rad");
+                let message = format!("found {number:?} m or rad in {of}, expected numbers below 1e6 m or rad");
                 return Err(self.error(span, message));
             }
         }
         Ok(numbers)
     }
 
-    pub(crate) fn metres<const N: usize>(
-        &self,
-        lengths: [f64; N],
-        span: Range<usize>,
-        of: &str,
-    ) -> Result<[f64; N]> {
+    pub(crate) fn metres<const N: usize>(&self, lengths: [f64; N], span: Range<usize>, of: &str) -> Result<[f64; N]> {
         self.check_numbers(lengths.map(|length| self.length.to_metres(length)), span, of)
     }
 
-    pub(crate) fn radians<const N: usize>(
-        &self,
-        angles: [f64; N],
-        span: Range<usize>,
-        of: &str,
-    ) -> Result<[f64; N]> {
+    pub(crate) fn radians<const N: usize>(&self, angles: [f64; N], span: Range<usize>, of: &str) -> Result<[f64; N]> {
         self.check_numbers(angles.map(|angle| self.angle.to_radians(angle)), span, of)
     }
 
@@ -93,8 +82,7 @@ impl Context<'_> {
 
     /// A name, neither empty nor with a character that XML, and so a URDF, cannot hold.
     pub(crate) fn name(&self, name: &Spanned<String>, of: &str) -> Result<String> {
-        if let Some(c) = name.get_ref().chars().find(|&c| c < ' ' && !c.is_ascii_whitespace() || c == '\u{c}')
-        {
+        if let Some(c) = name.get_ref().chars().find(|&c| c < ' ' && !c.is_ascii_whitespace() || c == '\u{c}') {
             let found = format!("found the control character {} in the name of {of}", c.escape_unicode());
             return Err(self.error(name.span(), format!("{found}, expected characters that can be seen")));
         }
@@ -110,9 +98,8 @@ impl Context<'_> {
         let position = self.metres(*table.position.get_ref(), table.position.span(), of)?;
         let given = [span(&table.quaternion_xyzw), span(&table.rpy), span(&table.rotation)];
         if let Some(second) = given.into_iter().flatten().nth(1) {
-            let message = format!(
-                "{of} has more than one orientation, expected one of quaternion_xyzw, rpy and rotation"
-            );
+            let message =
+                format!("{of} has more than one orientation, expected one of quaternion_xyzw, rpy and rotation");
             return Err(self.error(second, message));
         }
         let mut turn = Matrix3::identity();
@@ -130,10 +117,8 @@ impl Context<'_> {
     fn quaternion(&self, quaternion: &Spanned<[f64; 4]>, of: &str) -> Result<Matrix3<f64>> {
         let q = Vector4::from(self.check_numbers(*quaternion.get_ref(), quaternion.span(), of)?);
         if (q.norm() - 1.0).abs() > TABLE_ROUNDING {
-            let message = format!(
-                "the quaternion of {of} has length {:.4}, expected a unit quaternion (x, y, z, w)",
-                q.norm()
-            );
+            let message =
+                format!("the quaternion of {of} has length {:.4}, expected a unit quaternion (x, y, z, w)", q.norm());
             return Err(self.error(quaternion.span(), message));
         }
         Ok(rotation::from_quaternion_xyzw(&q))
@@ -153,8 +138,7 @@ impl Context<'_> {
             return Err(self.error(rows.span(), message));
         }
         if matrix.determinant() < 0.0 {
-            let message =
-                format!("the rotation of {of} is a reflection, expected a rotation matrix (determinant +1)");
+            let message = format!("the rotation of {of} is a reflection, expected a rotation matrix (determinant +1)");
             return Err(self.error(rows.span(), message));
         }
         // Each step squares the error of at most 4e-3, so three reach rounding.

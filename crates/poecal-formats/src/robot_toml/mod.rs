@@ -52,9 +52,7 @@ pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {
 /// Compiled once, and not for each kind of path.
 fn parse_at(text: &str, path: &Path) -> Result<Robot> {
     if text.len() as u64 > ResourceLimit::Settings.value() {
-        return Err(ErrorKind::File
-            .error(ResourceLimit::Settings.exceeded_error("a model in TOML"))
-            .in_file(path));
+        return Err(ErrorKind::File.error(ResourceLimit::Settings.exceeded_error("a model in TOML")).in_file(path));
     }
     let file: file::RobotTomlFile = toml::from_str(text).map_err(|error| syntax_error(&error, text, path))?;
     let context = Context { text, path, length: file.length_unit, angle: file.angle_unit };

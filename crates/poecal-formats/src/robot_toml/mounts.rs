@@ -68,11 +68,9 @@ pub(crate) fn place(context: &Context, file: &RobotTomlFile, robot: &mut Robot) 
 fn masses(context: &Context, file: &RobotTomlFile, robot: &mut Robot) -> Result<()> {
     for mass in &file.mass {
         let body = body(context, robot, &mass.on, "`on` of the mass")?;
-        let place =
-            context.metres(*mass.position.get_ref(), mass.position.span(), "`position` of the mass")?;
+        let place = context.metres(*mass.position.get_ref(), mass.position.span(), "`position` of the mass")?;
         if body == Body::Base {
-            let message =
-                "found a mass on the base, expected one that a joint moves: leave it out".to_owned();
+            let message = "found a mass on the base, expected one that a joint moves: leave it out".to_owned();
             return Err(context.error(mass.on.span(), message));
         }
         let kg = *mass.kg.get_ref();
@@ -86,12 +84,7 @@ fn masses(context: &Context, file: &RobotTomlFile, robot: &mut Robot) -> Result<
 }
 
 /// A name, unique within its kind.
-fn name<'a>(
-    context: &Context,
-    table: &'a TargetTable,
-    what: &str,
-    names: &mut BTreeSet<&'a String>,
-) -> Result<String> {
+fn name<'a>(context: &Context, table: &'a TargetTable, what: &str, names: &mut BTreeSet<&'a String>) -> Result<String> {
     let name = context.name(&table.name, &format!("the {what}"))?;
     if !names.insert(table.name.get_ref()) {
         let message = format!("found a second {what} named `{name}`, expected unique {what} names");

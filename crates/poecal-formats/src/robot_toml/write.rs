@@ -24,8 +24,7 @@ pub fn write(robot: &Robot) -> String {
     }
     text.push_str("\njoint = [\n");
     for (index, joint) in robot.joints.iter().enumerate() {
-        let parent =
-            joint.stands_on.map_or_else(String::new, |on| format!(", parent = {}", body_name(robot, on)));
+        let parent = joint.stands_on.map_or_else(String::new, |on| format!(", parent = {}", body_name(robot, on)));
         let terms = term_keys(robot, index);
         let _ = writeln!(text, "  {{ {}{parent}{terms} }},", joint_keys(joint));
     }
@@ -42,8 +41,7 @@ pub fn write(robot: &Robot) -> String {
     }
     for mass in &robot.masses {
         let (on, position) = (body_name(robot, mass.body), array(mass.place.into()));
-        let _ =
-            write!(text, "\n[[mass]]\non = {on}\nposition = {position}\nkg = {}\n", format_shortest(mass.kg));
+        let _ = write!(text, "\n[[mass]]\non = {on}\nposition = {position}\nkg = {}\n", format_shortest(mass.kg));
     }
     text
 }
@@ -66,8 +64,7 @@ fn joint_keys(joint: &Joint) -> String {
     };
     let mut keys = format!("name = {}, type = \"{}\", {screw}", quote_toml(&joint.name), joint.kind.word());
     if let Some(limits) = joint.limits {
-        let _ =
-            write!(keys, ", limits = [{}, {}]", format_shortest(limits.lower), format_shortest(limits.upper));
+        let _ = write!(keys, ", limits = [{}, {}]", format_shortest(limits.lower), format_shortest(limits.upper));
     }
     if let Some(tolerance) = joint.tolerance {
         let (angle, length) = (format_shortest(tolerance.angle_rad), format_shortest(tolerance.length_m));
@@ -89,8 +86,7 @@ fn joint_keys(joint: &Joint) -> String {
 /// The terms of a joint's value.
 fn term_keys(robot: &Robot, joint: usize) -> String {
     let own = robot.terms.iter().filter(|it| it.joint == joint);
-    let keys: Vec<String> =
-        own.map(|it| format!("{} = {}", it.term, format_shortest(it.coefficient))).collect();
+    let keys: Vec<String> = own.map(|it| format!("{} = {}", it.term, format_shortest(it.coefficient))).collect();
     if keys.is_empty() { String::new() } else { format!(", terms = {{ {} }}", keys.join(", ")) }
 }
 

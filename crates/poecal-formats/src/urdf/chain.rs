@@ -20,12 +20,10 @@ pub(crate) struct UrdfChain {
 }
 
 pub(crate) fn select(tree: &UrdfTree, selection: &ChainSelection) -> Result<UrdfChain> {
-    let find =
-        |name: &Option<String>, option| name.as_deref().map(|name| find_link(tree, name, option)).transpose();
+    let find = |name: &Option<String>, option| name.as_deref().map(|name| find_link(tree, name, option)).transpose();
     let named = |mounts: &[(String, String)], what: &str| -> Result<Vec<(String, usize)>> {
-        let found = |(name, link): &(String, String)| {
-            Ok((name.clone(), find_link(tree, link, &format!("{what} `{name}`"))?))
-        };
+        let found =
+            |(name, link): &(String, String)| Ok((name.clone(), find_link(tree, link, &format!("{what} `{name}`"))?));
         mounts.iter().map(found).collect()
     };
     let stated = find(&selection.base_link, "--base-link")?;
@@ -172,14 +170,7 @@ fn way_up(tree: &UrdfTree, base: Option<usize>, tip: usize, what: &str) -> Resul
             );
             Err(error(&tree.source, message))
         }
-        _ => Ok(UrdfChain {
-            base: at,
-            up: Vec::new(),
-            tip,
-            joints,
-            instruments: Vec::new(),
-            targets: Vec::new(),
-        }),
+        _ => Ok(UrdfChain { base: at, up: Vec::new(), tip, joints, instruments: Vec::new(), targets: Vec::new() }),
     }
 }
 

@@ -106,8 +106,7 @@ mod tests {
                 link("c", masses[1]),
                 joint("xyz=\"0 0 0.3\"", "lower=\"-2.9\" upper=\"2.9\"")
             );
-            let document =
-                UrdfDocument::parse(&text, Path::new("r.urdf"), &ChainSelection::default()).unwrap();
+            let document = UrdfDocument::parse(&text, Path::new("r.urdf"), &ChainSelection::default()).unwrap();
             let robot = document.robot().clone();
             doubts(&document, &robot)
         };

@@ -204,12 +204,9 @@ mod tests {
     /// A flange with a tool and a camera, beside a second arm: the links below moving joints at which the paths part.
     #[test]
     fn links_before_a_fork_can_be_chosen() {
-        let fixed =
-            |name: &str, parent: &str, child: &str| joint(name, parent, child).replace("continuous", "fixed");
-        let arm =
-            joint("j1", "base", "torso") + &joint("j2", "torso", "wrist") + &fixed("f", "wrist", "flange");
-        let ends =
-            fixed("t", "flange", "tool0") + &fixed("c", "flange", "camera") + &joint("j3", "torso", "left");
+        let fixed = |name: &str, parent: &str, child: &str| joint(name, parent, child).replace("continuous", "fixed");
+        let arm = joint("j1", "base", "torso") + &joint("j2", "torso", "wrist") + &fixed("f", "wrist", "flange");
+        let ends = fixed("t", "flange", "tool0") + &fixed("c", "flange", "camera") + &joint("j3", "torso", "left");
         let urdf = format!("<robot name=\"r\"><link name=\"base\"/>{arm}{ends}</robot>");
         let error = UrdfDocument::parse(&urdf, "r.urdf", &ChainSelection::default()).unwrap_err();
         assert!(
@@ -220,10 +217,7 @@ mod tests {
             "{error}"
         );
         let choices = error.choices().unwrap();
-        assert_eq!(
-            (choices.option, choices.of.join(" ")),
-            ("--tip-link", "flange torso tool0 camera left".to_owned())
-        );
+        assert_eq!((choices.option, choices.of.join(" ")), ("--tip-link", "flange torso tool0 camera left".to_owned()));
         for (link, joints) in [("flange", 2), ("torso", 1), ("left", 2)] {
             let selection = ChainSelection { tip_link: Some(link.to_owned()), ..ChainSelection::default() };
             assert_eq!(
@@ -238,21 +232,17 @@ mod tests {
     #[test]
     fn the_ends_of_a_tree_of_very_many_branches_are_found_by_one_walk() {
         const COUNT: usize = 20_000;
-        let (mut star, mut comb) = (
-            "<robot name=\"r\"><link name=\"l0\"/>".to_owned(),
-            "<robot name=\"r\"><link name=\"l0\"/>".to_owned(),
-        );
+        let (mut star, mut comb) =
+            ("<robot name=\"r\"><link name=\"l0\"/>".to_owned(), "<robot name=\"r\"><link name=\"l0\"/>".to_owned());
         for k in 1..=COUNT {
             star += &joint(&format!("j{k}"), "l0", &format!("l{k}"));
             comb += &joint(&format!("j{k}"), &format!("l{}", k - 1), &format!("l{k}"));
             comb += &joint(&format!("t{k}"), &format!("l{}", k - 1), &format!("tooth{k}"));
         }
-        for (mut urdf, ends, first) in [(star, COUNT, "`l1`, `l2`"), (comb, COUNT + 1, "`tooth1`, `tooth2`")]
-        {
+        for (mut urdf, ends, first) in [(star, COUNT, "`l1`, `l2`"), (comb, COUNT + 1, "`tooth1`, `tooth2`")] {
             write!(urdf, "</robot>").unwrap();
             let message = message(&urdf);
-            let expected =
-                format!("r.urdf: found {ends} end links with a moving joint above them ({first}, ");
+            let expected = format!("r.urdf: found {ends} end links with a moving joint above them ({first}, ");
             assert!(message.starts_with(&expected), "{message}");
             assert!(message.len() < 400, "{message}");
         }

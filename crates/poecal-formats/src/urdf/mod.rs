@@ -168,8 +168,7 @@ fn refuse_xacro(source: &XmlSource) -> Result<()> {
         let mut above = node.ancestors().skip(1).filter(roxmltree::Node::is_element);
         above.all(|it| READ_IN.contains(&it.tag_name().name()))
     };
-    let found =
-        source.document.descendants().find(|node| node.is_element() && is_xacro(node) && is_read(node));
+    let found = source.document.descendants().find(|node| node.is_element() && is_xacro(node) && is_read(node));
     let Some(node) = found else { return Ok(()) };
     let message = if source.document.descendants().any(|it| it.has_tag_name("joint")) {
         "found a xacro element beside joints, expected plain URDF: expand the file with `xacro robot.xacro > robot.urdf`, or, if it is expanded \

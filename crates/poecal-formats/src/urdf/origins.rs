@@ -26,8 +26,7 @@ impl UrdfDocument {
         let of = |part: &super::urdf_joints::UrdfJoint| UrdfOrigin {
             joint: part.name.clone(),
             xyz: stated(&part.place.xyz).unwrap_or_else(|| part.parent_from_joint.translation.into()),
-            rpy: stated(&part.place.rpy)
-                .unwrap_or_else(|| rotation::to_rpy(&part.parent_from_joint.rotation)),
+            rpy: stated(&part.place.rpy).unwrap_or_else(|| rotation::to_rpy(&part.parent_from_joint.rotation)),
         };
         self.parts.iter().map(of).collect()
     }

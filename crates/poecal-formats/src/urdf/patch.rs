@@ -61,8 +61,7 @@ impl UrdfDocument {
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
             // Mounts on the base link itself, and not on a link fixed to it, have the identity as their link's pose.
             let is_base = end.part.is_none() && end.link == self.robot.base_name;
-            let base_from_link =
-                if is_base { Pose::identity() } else { self.link_pose(&base_from_links, end.part) };
+            let base_from_link = if is_base { Pose::identity() } else { self.link_pose(&base_from_links, end.part) };
             if are_close(&base_from_link, wanted) {
                 links.push(end.link.clone());
                 continue;
@@ -166,8 +165,7 @@ impl UrdfDocument {
     }
 
     fn other_robot_error(&self, found: &str) -> Error {
-        ErrorKind::Export
-            .error(format!("{found}, expected the robot that was read from {}", self.path.display()))
+        ErrorKind::Export.error(format!("{found}, expected the robot that was read from {}", self.path.display()))
     }
 
     fn check_same_joints(&self, calibrated: &Robot) -> Result<()> {
@@ -180,9 +178,7 @@ impl UrdfDocument {
         }
         for joint in &calibrated.joints {
             if !is_finite(&joint.frame) || !is_finite(&joint.screw.exp(0.0)) {
-                return Err(
-                    self.other_robot_error(&format!("joint `{}` is not at a finite place", joint.name))
-                );
+                return Err(self.other_robot_error(&format!("joint `{}` is not at a finite place", joint.name)));
             }
         }
         if !is_finite(&calibrated.home) {
@@ -239,11 +235,7 @@ fn is_made_continuous(part: &UrdfJoint, joint: &Joint) -> bool {
 /// The frame with its origin shifted onto the axis, unless it is on it.
 pub(crate) fn frame_on_axis(frame: &Pose, screw: &Screw) -> Pose {
     let on_axis = screw.nearest_point(&frame.translation);
-    if (on_axis - frame.translation).norm() > AXIS_TOLERANCE {
-        Pose::new(frame.rotation, on_axis)
-    } else {
-        *frame
-    }
+    if (on_axis - frame.translation).norm() > AXIS_TOLERANCE { Pose::new(frame.rotation, on_axis) } else { *frame }
 }
 
 /// Writes the changed parts of an origin so that the frame is at `target`. Returns the frame by the numbers of the text.

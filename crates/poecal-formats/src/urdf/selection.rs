@@ -71,8 +71,7 @@ pub fn named_link(text: &str) -> Result<(String, String)> {
         Some((name, link)) if !name.trim().is_empty() && !link.trim().is_empty() => {
             Ok((name.trim().to_owned(), link.trim().to_owned()))
         }
-        _ => ErrorKind::Option
-            .refuse(format!("found `{text}`, expected a name and its link, like camera=camera_link")),
+        _ => ErrorKind::Option.refuse(format!("found `{text}`, expected a name and its link, like camera=camera_link")),
     }
 }
 

@@ -39,9 +39,8 @@ impl<'a> Splice<'a> {
             }
             return;
         }
-        let attribute = |name: &str, value: Option<String>| {
-            value.map_or(String::new(), |value| format!(" {name}=\"{value}\""))
-        };
+        let attribute =
+            |name: &str, value: Option<String>| value.map_or(String::new(), |value| format!(" {name}=\"{value}\""));
         let attributes = attribute("xyz", xyz) + &attribute("rpy", rpy);
         let space = self.space_before(place.first_child);
         self.insert(place.first_child, format!("<origin{attributes}/>{space}"));

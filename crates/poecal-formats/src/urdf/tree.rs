@@ -85,8 +85,7 @@ impl<'a> UrdfTree<'a> {
         for node in source.children(robot, "joint") {
             let joint = read_joint(source, node, &tree.link_indices)?;
             if tree.joint_indices.insert(joint.name, tree.joints.len()).is_some() {
-                let message =
-                    format!("found a second joint named `{}`, expected unique joint names", joint.name);
+                let message = format!("found a second joint named `{}`, expected unique joint names", joint.name);
                 return Err(source.error(node, message));
             }
             tree.add(joint)?;
@@ -149,10 +148,8 @@ impl<'a> UrdfTree<'a> {
             // A path longer than the number of links visits one of them twice.
             let way: Vec<usize> = way.take(self.links.len() + 1).collect();
             if let Some((_, joint)) = way.get(self.links.len()).and_then(|&at| self.parent_joint(at)) {
-                let message = format!(
-                    "joint `{}` closes a loop of links, expected a tree with one root link",
-                    joint.name
-                );
+                let message =
+                    format!("joint `{}` closes a loop of links, expected a tree with one root link", joint.name);
                 return Err(self.source.error(joint.node, message));
             }
             way.into_iter().for_each(|at| rooted[at] = true);
@@ -170,9 +167,8 @@ fn read_joint<'a>(
     let of = format!("joint `{name}`");
     let (word, attribute) = source.require_attribute(node, "type", &of)?;
     let kind = JointType::of_word(word).ok_or_else(|| {
-        let message = format!(
-            "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
-        );
+        let message =
+            format!("{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar");
         source.error_at(attribute.range_value().start, message)
     })?;
     let link = |role: &'static str| -> Result<usize> {

@@ -149,8 +149,7 @@ pub(crate) fn read(
     }
     let at = |link: usize| links.get(&link).copied().unwrap_or(base);
     let tip = at(chain.tip);
-    let mut robot =
-        Robot::new(name, joints, tip.base_from_link).map_err(|error| error.in_file(tree.source.path))?;
+    let mut robot = Robot::new(name, joints, tip.base_from_link).map_err(|error| error.in_file(tree.source.path))?;
     tree.link_name(chain.base).clone_into(&mut robot.base_name);
     tree.link_name(chain.tip).clone_into(&mut robot.tip_name);
     robot.tip = Some(tip.body).filter(|&body| body != robot.tip_body());
@@ -216,12 +215,7 @@ pub(crate) fn fixed_pose(source: &XmlSource, joint: &TreeJoint) -> Option<Pose> 
     read_part(source, joint).ok().map(|part| part.parent_from_joint)
 }
 
-fn moving_joint(
-    tree: &UrdfTree,
-    joint: &TreeJoint,
-    axis: &Vector3<f64>,
-    base_from_joint: Pose,
-) -> Result<Joint> {
+fn moving_joint(tree: &UrdfTree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
     let direction = base_from_joint.rotation * axis;
     let slides = joint.kind == JointType::Prismatic;
     let kind = if slides { JointKind::Prismatic } else { JointKind::Revolute };
@@ -253,10 +247,7 @@ fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<UrdfJo
         has_idle_quaternion: has_quaternion && !is_quaternion,
         place: JointSpans {
             element: joint.node.range(),
-            first_child: joint
-                .node
-                .first_element_child()
-                .map_or(joint.node.range().end, |child| child.range().start),
+            first_child: joint.node.first_element_child().map_or(joint.node.range().end, |child| child.range().start),
             origin: origin.map(|node| source.after_name(node)),
             xyz: attribute(origin, "xyz"),
             rpy: attribute(origin, if is_quaternion { "quat_xyzw" } else { "rpy" }),

@@ -124,11 +124,7 @@ impl UrdfText {
     }
 
     pub(crate) fn limits(&mut self, limits: JointLimits) {
-        let limits = format!(
-            "lower=\"{}\" upper=\"{}\"",
-            format_shortest(limits.lower),
-            format_shortest(limits.upper)
-        );
+        let limits = format!("lower=\"{}\" upper=\"{}\"", format_shortest(limits.lower), format_shortest(limits.upper));
         self.line(2, &format!("<limit {limits} effort=\"0\" velocity=\"0\"/>"));
     }
 

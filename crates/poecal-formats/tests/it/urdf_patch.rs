@@ -50,8 +50,7 @@ fn random_urdf(random: &mut Random, length: f64) -> String {
     for link in 0..=count {
         let _ = write!(text, "  <link name='l{link}'><visual><origin xyz='1 2 3'/></visual></link>{end}");
     }
-    let leader =
-        "<link name='m'/><joint name='lead' type='prismatic'><parent link='l0'/><child link='m'/></joint>";
+    let leader = "<link name='m'/><joint name='lead' type='prismatic'><parent link='l0'/><child link='m'/></joint>";
     let _ = write!(text, "  {leader}{end}");
     for i in 0..count {
         let moving = random.choice(&["revolute", "continuous", "prismatic"]);
@@ -259,18 +258,12 @@ fn quaternions_count_by_the_version_of_the_text() {
     for version in ["", " version=\"1.0\""] {
         let urdf = parse(&text(version, quaternion), "b");
         assert_eq!(urdf.robot().home.rotation, parse(&text("", ""), "b").robot().home.rotation);
-        assert!(
-            urdf.remarks()[0].starts_with("ignored `quat_xyzw` in the origins of `j`"),
-            "{:?}",
-            urdf.remarks()
-        );
+        assert!(urdf.remarks()[0].starts_with("ignored `quat_xyzw` in the origins of `j`"), "{:?}", urdf.remarks());
     }
     let error = |origin: &str| {
         let text = text(" version=\"1.2\"", origin);
         UrdfDocument::parse(&text, "r.urdf", &ChainSelection::default()).unwrap_err().to_string()
     };
-    assert!(
-        error(&format!("rpy=\"0 0 0\" {quaternion}")).contains("has `rpy` and `quat_xyzw`, expected one")
-    );
+    assert!(error(&format!("rpy=\"0 0 0\" {quaternion}")).contains("has `rpy` and `quat_xyzw`, expected one"));
     assert!(error("quat_xyzw=\"1 1 0 0\"").contains("has a quaternion of length 1.41"));
 }

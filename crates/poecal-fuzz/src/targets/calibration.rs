@@ -70,11 +70,8 @@ pub(crate) fn page(file: &CalibrationFile, residuals: &Residuals) -> bool {
     };
     let [head, body, _, data, ..] = page.as_slice() else { panic!("{} pieces", page.len()) };
     // A leverage that is not a number is reported as such.
-    let unfit = residuals
-        .rows()
-        .iter()
-        .filter_map(|row| row.judged)
-        .any(|it| !(it.leverage + it.studentized).is_finite());
+    let unfit =
+        residuals.rows().iter().filter_map(|row| row.judged).any(|it| !(it.leverage + it.studentized).is_finite());
     assert!(head.starts_with("<!DOCTYPE html>") && page.concat().ends_with("</html>\n"));
     for piece in [head, body] {
         let lower = piece.to_lowercase();

@@ -24,8 +24,7 @@ pub fn hand_eye(data: &[u8]) -> bool {
     let Some([one, other]) = parts::<2>(data) else { return false };
     let ending = if one.starts_with(['-', '{', '[']) { "yaml" } else { "csv" };
     let names = [format!("{PATH}.{ending}"), format!("{PATH}.2")];
-    let all: Vec<(&str, &[u8])> =
-        names.iter().map(String::as_str).zip([one.as_bytes(), other.as_bytes()]).collect();
+    let all: Vec<(&str, &[u8])> = names.iter().map(String::as_str).zip([one.as_bytes(), other.as_bytes()]).collect();
     let files = if other.is_empty() { &all[..1] } else { &all[..] };
     let paths: Vec<PathBuf> = files.iter().map(|it| it.0.into()).collect();
     let options = ReadOptions::default();
@@ -56,9 +55,8 @@ pub fn hand_eye(data: &[u8]) -> bool {
 pub fn tcp(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let path = format!("{PATH}.csv");
-    let read = with_files(&[(&path, text.as_bytes())], || {
-        read_flange_poses(Path::new(&path), PoseUnits::default(), None)
-    });
+    let read =
+        with_files(&[(&path, text.as_bytes())], || read_flange_poses(Path::new(&path), PoseUnits::default(), None));
     let Some(poses) = check_result(read, &text) else { return false };
     poses.understood.iter().chain(&poses.warnings).for_each(|words| one_line(words));
     if poses.touches.flange.poses.len() <= MOST_ROWS

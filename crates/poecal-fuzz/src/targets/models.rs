@@ -15,8 +15,7 @@ const ROUNDING: f64 = 1e-10;
 /// A URDF: read, written into its own text as it is and with other screws, and in the other form.
 pub fn urdf(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
-    let Some(document) = check_result(UrdfDocument::parse(&text, PATH, &ChainSelection::default()), &text)
-    else {
+    let Some(document) = check_result(UrdfDocument::parse(&text, PATH, &ChainSelection::default()), &text) else {
         return false;
     };
     assert_eq!(document.text(), text);

@@ -95,9 +95,8 @@ fn assert_sound(file: &MeasurementFile, text: &str) {
     assert!(file.data.observations.iter().all(|row| (1..=lines).contains(&(row.source.line as usize))));
     assert!(file.data.all_readings().iter().all(|reading| reading.abs() <= 1e6));
     let pictures = &file.data.pictures;
-    let has_points = |board: usize, point: u32| {
-        pictures.boards.get(board).is_some_and(|it| (point as usize) < it.points.len())
-    };
+    let has_points =
+        |board: usize, point: u32| pictures.boards.get(board).is_some_and(|it| (point as usize) < it.points.len());
     for picture in &pictures.all {
         assert!(picture.camera < pictures.cameras.len() && !picture.corners.is_empty());
         assert!(picture.corners.iter().all(|it| has_points(picture.board, it.point)));

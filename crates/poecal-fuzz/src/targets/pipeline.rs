@@ -39,8 +39,7 @@ pub fn pipeline(data: &[u8]) -> bool {
         return true;
     }
     check_diagnosis(&model, &file);
-    let calibrated =
-        calibrate(&model.robot, &file.data, &CalibrationOptions { restarts: 2, ..Default::default() });
+    let calibrated = calibrate(&model.robot, &file.data, &CalibrationOptions { restarts: 2, ..Default::default() });
     let calibration = match calibrated {
         Ok(calibration) => calibration,
         Err(error) => {

@@ -71,9 +71,11 @@ fn assert_sound(file: &MeasurementFile) {
     file.notes.iter().chain(&file.warnings).for_each(|words| one_line(words));
     assert!(file.data.all_readings().iter().all(|reading| reading.is_finite()));
     for join in &file.joins {
-        assert!(join.pairs.iter().all(|[one, other]| {
-            (1..=join.joint_rows).contains(one) && (1..=join.measured_rows).contains(other)
-        }));
+        assert!(
+            join.pairs.iter().all(|[one, other]| {
+                (1..=join.joint_rows).contains(one) && (1..=join.measured_rows).contains(other)
+            })
+        );
         assert!(join.paired >= join.pairs.len());
     }
 }

@@ -32,8 +32,7 @@ pub fn settings(data: &[u8]) -> bool {
         assert!(settings.error(entry, "found it").place().is_some());
     }
     let again = certain(Settings::parse(&written, PATH, &KEYS), &written);
-    let values =
-        |all: Settings| all.entries.into_iter().map(|entry| (entry.key, entry.value)).collect::<Vec<_>>();
+    let values = |all: Settings| all.entries.into_iter().map(|entry| (entry.key, entry.value)).collect::<Vec<_>>();
     assert_eq!(values(settings), values(again), "{written}");
     true
 }

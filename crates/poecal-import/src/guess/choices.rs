@@ -14,17 +14,15 @@ impl TableSample<'_> {
             return if WAYS.contains(&value) {
                 Ok(())
             } else {
-                ErrorKind::Option.refuse(format!(
-                    "--column: found `{value}` for the way of the poses, expected {expected}"
-                ))
+                ErrorKind::Option
+                    .refuse(format!("--column: found `{value}` for the way of the poses, expected {expected}"))
             };
         }
         let chosen = if value.is_empty() { String::new() } else { self.known_column(value, key)? };
         let keys: Vec<&str> = fields.iter().map(|it| it.key.as_str()).collect();
         let Some(at) = keys.iter().position(|it| *it == key) else {
             let hint = nearest_or_all(key, &keys);
-            return ErrorKind::Option
-                .refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
+            return ErrorKind::Option.refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
         };
         if let Some(field) = fields.get_mut(at) {
             field.chosen = chosen;

@@ -69,11 +69,7 @@ struct TableSample<'h> {
 /// # Errors
 /// Those of [`super::read`] for a file that is no table; [`ErrorKind::Option`] for a form that is read without a mapping, and for a field or a
 /// column that does not exist.
-pub fn guess_columns(
-    path: impl AsRef<Path>,
-    robot: &Robot,
-    chosen: &[(String, String)],
-) -> Result<ColumnGuess> {
+pub fn guess_columns(path: impl AsRef<Path>, robot: &Robot, chosen: &[(String, String)]) -> Result<ColumnGuess> {
     guess_at(path.as_ref(), robot, chosen)
 }
 
@@ -160,8 +156,7 @@ impl<'h> TableSample<'h> {
             ReadingKind::Angle | ReadingKind::Factor => "unit.angle",
         };
         let joint = |(name, column): (&String, Option<usize>)| {
-            MappedField::column("joints", name, name, column.and_then(|it| self.name(it)))
-                .of_number(unit(name))
+            MappedField::column("joints", name, name, column.and_then(|it| self.name(it))).of_number(unit(name))
         };
         let mut fields: Vec<MappedField> = names.iter().zip(columns).map(joint).collect();
         for (key, label) in [("unit.angle", "unit of the angles"), ("unit.length", "unit of the slides")] {
@@ -232,10 +227,7 @@ impl<'h> TableSample<'h> {
     /// Units of columns that state none.
     fn guess_units(&self, fields: &mut [MappedField]) {
         for unit in UNITS {
-            let own = fields
-                .iter()
-                .filter(|it| it.unit == unit.key)
-                .filter_map(|it| self.index(it.chosen_column()?));
+            let own = fields.iter().filter(|it| it.unit == unit.key).filter_map(|it| self.index(it.chosen_column()?));
             let chosen = self.guess_unit(&own.collect::<Vec<_>>(), &unit);
             let field = fields.iter_mut().find(|it| it.key == unit.key);
             field.into_iter().for_each(|it| it.chosen = chosen.map_or("", NamedUnit::symbol).to_owned());
@@ -243,11 +235,7 @@ impl<'h> TableSample<'h> {
     }
 
     /// The unit of some columns: that in the name of the first one, else by the size of the numbers. None if all state theirs.
-    fn guess_unit(
-        &self,
-        columns: &[usize],
-        UnitField { of, most, usual, .. }: &UnitField,
-    ) -> Option<NamedUnit> {
+    fn guess_unit(&self, columns: &[usize], UnitField { of, most, usual, .. }: &UnitField) -> Option<NamedUnit> {
         let mut cells = columns.iter().filter_map(|it| self.header.cells.get(*it));
         if cells.all(|cell| cell.units().next().is_some()) {
             return None;

@@ -20,8 +20,7 @@ const GREEK: OrientationSuffixes = (&["alpha", "beta", "gamma"], OrientationForm
 
 /// Orientations by the last words of their names: quaternions, then the angles of our form, in the order of the reader, then those of makers.
 fn orientations() -> impl Iterator<Item = OrientationSuffixes> {
-    let rank =
-        |it: &&OrientationConvention| if it.form.len() == 4 { 0 } else { 1 + u8::from(it.is_unique()) };
+    let rank = |it: &&OrientationConvention| if it.form.len() == 4 { 0 } else { 1 + u8::from(it.is_unique()) };
     // Joints are named q0 to q3.
     let is_sought = |it: &&OrientationConvention| it.form.len() <= 4 && !it.has("q0");
     let mut known: Vec<&OrientationConvention> = CONVENTIONS.iter().filter(is_sought).collect();
@@ -104,17 +103,12 @@ impl<'h> HeaderNames<'h> {
         if own.iter().any(Option::is_some) {
             return own;
         }
-        if let Some(found) =
-            match_numbered_columns(self.header, robot, &ColumnMap::default(), &robot.reading_names())
-        {
+        if let Some(found) = match_numbered_columns(self.header, robot, &ColumnMap::default(), &robot.reading_names()) {
             return found.iter().map(|(_, column)| self.find_exact(column)).collect();
         }
         let is_joint = |column: &usize| {
-            let name =
-                self.header.cells.get(*column).map(|cell| plain_letters(&cell.name)).unwrap_or_default();
-            ColumnRole::InJoint.is_in(&name)
-                && !ColumnRole::Other.is_in(&name)
-                && !ColumnRole::InStatistic.is_in(&name)
+            let name = self.header.cells.get(*column).map(|cell| plain_letters(&cell.name)).unwrap_or_default();
+            ColumnRole::InJoint.is_in(&name) && !ColumnRole::Other.is_in(&name) && !ColumnRole::InStatistic.is_in(&name)
         };
         let found: Vec<usize> = self.numeric().map(|it| it.0).filter(is_joint).collect();
         if found.len() == names.len() { found.into_iter().map(Some).collect() } else { own }
@@ -144,9 +138,7 @@ impl<'h> HeaderNames<'h> {
 
     /// The columns of the position, and the beginning of their names.
     pub(crate) fn position(&self) -> Option<ColumnPrefixes> {
-        ColumnRole::Axes
-            .rows()
-            .find_map(|axes| self.find_by_suffix(&axes.split(' ').collect::<Vec<_>>(), None))
+        ColumnRole::Axes.rows().find_map(|axes| self.find_by_suffix(&axes.split(' ').collect::<Vec<_>>(), None))
     }
 
     /// The form of the orientation and its columns, beside a position whose columns begin with `near`.
@@ -157,8 +149,7 @@ impl<'h> HeaderNames<'h> {
     /// The columns of a form that was chosen, as far as their names show it.
     pub(crate) fn parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<usize>> {
         let angles = orientations().filter(|it| it.1.len() == 3 && form.len() == 3).map(|it| it.0);
-        let found =
-            std::iter::once(form.part_names()).chain(angles).find_map(|last| self.find_by_suffix(last, near));
+        let found = std::iter::once(form.part_names()).chain(angles).find_map(|last| self.find_by_suffix(last, near));
         found.map_or_else(|| vec![None; form.len()], |it| it.1.into_iter().map(Some).collect())
     }
 }

@@ -22,8 +22,7 @@ fn list<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
 
 /// The mapping in TOML, of poses that point in the direction `way`; an input without a column is a comment.
 pub(crate) fn mapping(fields: &[MappedField], way: Option<&str>, left_out: &[String], file: &str) -> String {
-    let mut out =
-        format!("# How the columns of {} are read, by the option --columns.\n", escape_invisible(file));
+    let mut out = format!("# How the columns of {} are read, by the option --columns.\n", escape_invisible(file));
     let of = |group: &'static str| fields.iter().filter(move |it| it.group == group && it.choices.is_empty());
     let word = |key: &str| {
         let field = fields.iter().find(|it| it.key == key && !it.choices.is_empty());

@@ -108,16 +108,12 @@ impl<'a, 't> FileAxes<'a, 't> {
         }
         let mut own = (1..=self.own).map(AxisSlot::Own);
         let mut external = self.external.iter().copied().map(AxisSlot::External);
-        let places =
-            self.slides.iter().map(|slides| if is_all || !slides { own.next() } else { external.next() });
+        let places = self.slides.iter().map(|slides| if is_all || !slides { own.next() } else { external.next() });
         let places: Vec<AxisSlot> = places.collect::<Option<_>>()?;
         let fits = |row: &ListedConfiguration<'_>| {
             let mut all = places.iter().zip(&self.slides);
             all.all(|(place, slides)| row.axis(*place).is_none_or(|it| it.fits(*slides)))
-                && row
-                    .external
-                    .iter()
-                    .all(|(at, it)| places.contains(&AxisSlot::External(*at)) || it.is_zero())
+                && row.external.iter().all(|(at, it)| places.contains(&AxisSlot::External(*at)) || it.is_zero())
         };
         self.listed.iter().all(fits).then_some(places)
     }
@@ -135,8 +131,7 @@ impl<'a, 't> FileAxes<'a, 't> {
             None => self.name(it),
         });
         let axes: Vec<String> = axes.collect();
-        let joint =
-            |(name, slides): (&String, &bool)| format!("`{name}`{}", if *slides { " (slides)" } else { "" });
+        let joint = |(name, slides): (&String, &bool)| format!("`{name}`{}", if *slides { " (slides)" } else { "" });
         let joints: Vec<String> = joints.iter().zip(&self.slides).map(joint).collect();
         FileLine(self.listed.first().map_or(1, |it| it.line)).refuse(format!(
             "found the axes {}, which are not one to one the joints {}, expected an axis of the arm for each joint that turns, an external one for each that \
@@ -175,16 +170,14 @@ pub(super) fn make_table(
         }
         None => return axes.refuse(&joints),
     };
-    let mut made =
-        MadeTable::new(listed.first().map_or(1, |it| it.line), std::iter::once(first).chain(columns));
+    let mut made = MadeTable::new(listed.first().map_or(1, |it| it.line), std::iter::once(first).chain(columns));
     for row in listed {
         let values = places.iter().map(|place| row.axis(*place).ok_or(*place));
         let values: Result<Vec<AxisValue<'_>>, AxisSlot> = values.collect();
         match values {
             Ok(values) => made.row(
                 row.line,
-                std::iter::once(CellValue::Text(&row.name))
-                    .chain(values.iter().map(|it| CellValue::Text(it.value))),
+                std::iter::once(CellValue::Text(&row.name)).chain(values.iter().map(|it| CellValue::Text(it.value))),
             ),
             Err(missing) => {
                 return FileLine(row.line).refuse(format!(

@@ -98,8 +98,7 @@ impl<'t> RecordedFrames<'t> {
         opening: &OpeningContext<'_>,
     ) -> Result<MadeTable, Refusal> {
         if self.all.is_empty() {
-            return FileLine(self.header)
-                .refuse("found the names of columns and no frame, expected at least one");
+            return FileLine(self.header).refuse("found the names of columns and no frame, expected at least one");
         }
         let taken = self.take_bodies(bodies, what, opening)?;
         let places: Vec<&RecordedBody> = taken.iter().copied().chain(&self.unnamed).collect();
@@ -169,12 +168,9 @@ impl<'t> RecordedFrames<'t> {
         if taken.len() < FEWEST_MARKERS {
             return None;
         }
-        let place = |frame: &RecordedFrame<'_>, body: &RecordedBody| {
-            Some(Vector3::from(frame.position(body)?) * self.unit.1)
-        };
-        let of = |frame: &RecordedFrame<'_>| -> MarkerPositions {
-            places.iter().map(|it| place(frame, it)).collect()
-        };
+        let place =
+            |frame: &RecordedFrame<'_>, body: &RecordedBody| Some(Vector3::from(frame.position(body)?) * self.unit.1);
+        let of = |frame: &RecordedFrame<'_>| -> MarkerPositions { places.iter().map(|it| place(frame, it)).collect() };
         let frames: Vec<MarkerPositions> = self.all.iter().map(of).collect();
         let columns: Vec<usize> = (0..taken.len()).collect();
         let others: Vec<usize> = (if self.are_unnamed { 0 } else { taken.len() }..places.len()).collect();
@@ -194,9 +190,7 @@ impl<'t> RecordedFrames<'t> {
             let found: Vec<&RecordedBody> = bodies.iter().filter(|it| it.name == *wanted).collect();
             if found.is_empty() {
                 let expected = names(&all);
-                return Refusal::refuse_whole(format!(
-                    "found no {what} `{wanted}`, expected one of {expected}"
-                ));
+                return Refusal::refuse_whole(format!("found no {what} `{wanted}`, expected one of {expected}"));
             }
             return Ok(found);
         }

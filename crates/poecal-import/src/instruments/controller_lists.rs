@@ -9,8 +9,7 @@ use super::words::{cells, lines, number, quote_names};
 use super::{FileForm, OpeningContext};
 use crate::Separator;
 
-pub(crate) const FANUC: FileForm =
-    FileForm { title: "position registers of FANUC", is_it: is_fanuc, table: of_fanuc };
+pub(crate) const FANUC: FileForm = FileForm { title: "position registers of FANUC", is_it: is_fanuc, table: of_fanuc };
 pub(crate) const STAUBLI: FileForm =
     FileForm { title: "joint data of Stäubli (VAL3)", is_it: is_staubli, table: of_staubli };
 pub(crate) const KUKA: FileForm =
@@ -47,8 +46,7 @@ fn of_fanuc(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refus
             let own = rest.split('\'').nth(1).unwrap_or_default();
             let name = if own.is_empty() { format!("PR{at}") } else { own.to_owned() };
             if !rest.contains('=') {
-                return FileLine(line)
-                    .refuse(format!("found the register `{name}` cut off, expected a whole file"));
+                return FileLine(line).refuse(format!("found the register `{name}` cut off, expected a whole file"));
             }
             if is_first_group {
                 listed.push(ListedConfiguration::new(line, name));
@@ -107,8 +105,8 @@ fn of_staubli(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Ref
         for element in content.split('<') {
             let attribute = |name: &str| element.split_once(&format!(" {name}=\""))?.1.split('"').next();
             if element.starts_with("Data ") {
-                is_joints = attribute("type").is_some_and(|it| it.starts_with("joint"))
-                    || element.contains(" type=\"joint");
+                is_joints =
+                    attribute("type").is_some_and(|it| it.starts_with("joint")) || element.contains(" type=\"joint");
                 if is_joints {
                     arrays.push((attribute("name").unwrap_or_default(), Vec::new()));
                 }
@@ -117,9 +115,8 @@ fn of_staubli(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Ref
                 && let Some((name, listed)) = arrays.last_mut()
             {
                 if !element.contains('>') {
-                    return FileLine(line).refuse(
-                        "found a `Value` without its `>`, expected it in the same line: the file is cut off",
-                    );
+                    return FileLine(line)
+                        .refuse("found a `Value` without its `>`, expected it in the same line: the file is cut off");
                 }
                 let own = numbered_values(element, 'j');
                 let name = format!("{name}[{}]", attribute("key").unwrap_or_default());
@@ -194,9 +191,8 @@ fn of_kuka(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusa
 
 /// Names of a line of joint states, behind seconds, nanoseconds and the name of a frame.
 fn echo_names<'t>(cells: &[&'t str]) -> Option<Vec<&'t str>> {
-    let is_whole = |at: usize| {
-        cells.get(at).is_some_and(|it| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit()))
-    };
+    let is_whole =
+        |at: usize| cells.get(at).is_some_and(|it| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit()));
     let names: Vec<&str> =
         cells.iter().skip(3).take_while(|it| number(it).is_none() && !it.is_empty()).copied().collect();
     (is_whole(0) && is_whole(1) && !names.is_empty() && cells.len() >= 3 + 2 * names.len()).then_some(names)
@@ -205,9 +201,7 @@ fn echo_names<'t>(cells: &[&'t str]) -> Option<Vec<&'t str>> {
 fn is_echo(text: &str, opening: &OpeningContext<'_>) -> bool {
     let Some(line) = lines(text).next() else { return false };
     let names = echo_names(&cells(line.1, Separator::Comma));
-    names.is_some_and(|names| {
-        opening.robot.joint_reading_names().iter().any(|it| names.contains(&it.as_str()))
-    })
+    names.is_some_and(|names| opening.robot.joint_reading_names().iter().any(|it| names.contains(&it.as_str())))
 }
 
 fn of_echo(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
@@ -228,8 +222,7 @@ fn of_echo(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusa
             ));
         }
         let value = |at: usize| cells.get(at).copied().and_then(number);
-        let time =
-            value(0).zip(value(1)).map_or(CellValue::Empty, |(s, ns)| CellValue::Number(s + 1e-9 * ns));
+        let time = value(0).zip(value(1)).map_or(CellValue::Empty, |(s, ns)| CellValue::Number(s + 1e-9 * ns));
         let mut row = vec![time];
         for joint in &joints {
             let Some(at) = names.iter().position(|it| it == joint) else {

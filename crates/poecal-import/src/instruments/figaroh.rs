@@ -39,10 +39,8 @@ fn table(text: &str, _: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let (others, names): (Vec<usize>, Vec<&str>) =
         places.zip(names).filter(|it| !markers.iter().any(|marker| marker.contains(&it.0))).unzip();
     let target = has_several.then(|| TableColumn::from("target"));
-    let mut made = MadeTable::new(
-        head.line,
-        target.into_iter().chain(place("m")).chain(names.into_iter().map(TableColumn::from)),
-    );
+    let mut made =
+        MadeTable::new(head.line, target.into_iter().chain(place("m")).chain(names.into_iter().map(TableColumn::from)));
     for (line, found) in head.rows(text) {
         for (number, marker) in (1_u32..).zip(&markers) {
             let target = has_several.then_some(CellValue::Number(f64::from(number)));

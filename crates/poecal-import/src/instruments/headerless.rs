@@ -56,8 +56,7 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
     }
     let count = opening.robot.joint_reading_names().len();
     let numbers = width - usize::from(is_named);
-    let is_whole =
-        |row: &CellRow<'_>| row.1.first().is_some_and(|it| it.bytes().all(|it| it.is_ascii_digit()));
+    let is_whole = |row: &CellRow<'_>| row.1.first().is_some_and(|it| it.bytes().all(|it| it.is_ascii_digit()));
     match numbers {
         it if it == count && it != 3 => Ok(joints(rows, is_named.then_some("id"), opening)),
         it if it == count + 1 && it != 4 && !is_named && is_rising(&rows) => {
@@ -81,10 +80,7 @@ fn is_rising(rows: &[CellRow<'_>]) -> bool {
 }
 
 /// The table of all cells.
-fn make_table(
-    columns: impl IntoIterator<Item = impl Into<TableColumn>>,
-    rows: Vec<CellRow<'_>>,
-) -> MadeTable {
+fn make_table(columns: impl IntoIterator<Item = impl Into<TableColumn>>, rows: Vec<CellRow<'_>>) -> MadeTable {
     let mut made = MadeTable::new(1, columns);
     rows.into_iter().for_each(|(line, cells)| made.row(line, cells.into_iter().map(CellValue::Text)));
     made

@@ -63,9 +63,8 @@ fn find_columns(head: &HeadLine<'_>, names: &LeicaNames<'_>) -> Result<Vec<UsedC
             _ if is_turn => column,
             Some(unit) => column.in_unit(unit),
             None => {
-                return FileLine(head.line).refuse(format!(
-                    "found the column `{theirs}` without a unit, expected one, as `{theirs} [mm]`"
-                ));
+                return FileLine(head.line)
+                    .refuse(format!("found the column `{theirs}` without a unit, expected one, as `{theirs} [mm]`"));
             }
         };
         used.push((at, is_expanded, column));
@@ -73,8 +72,7 @@ fn find_columns(head: &HeadLine<'_>, names: &LeicaNames<'_>) -> Result<Vec<UsedC
     if matches!(turns, 0 | 4) {
         return Ok(used);
     }
-    FileLine(head.line)
-        .refuse(format!("found {turns} of the columns Q0, Q1, Q2, Q3, expected all of them, or none"))
+    FileLine(head.line).refuse(format!("found {turns} of the columns Q0, Q1, Q2, Q3, expected all of them, or none"))
 }
 
 fn table(text: &str, _: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
@@ -98,9 +96,8 @@ fn table(text: &str, _: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     if names.iter().any(|it| it.0 == "U(95) X") {
         made.say(format!("U(95) divided by {COVERAGE} are the standard deviations"));
     }
-    let is_left = |(at, it): &(usize, &(String, Option<&str>))| {
-        !it.0.is_empty() && !used.iter().any(|used| used.0 == *at)
-    };
+    let is_left =
+        |(at, it): &(usize, &(String, Option<&str>))| !it.0.is_empty() && !used.iter().any(|used| used.0 == *at);
     let left = quote_names(names.iter().enumerate().filter(is_left).map(|(_, it)| &it.0));
     if !left.is_empty() {
         made.say(format!("left out {left}"));

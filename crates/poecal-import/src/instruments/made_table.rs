@@ -297,8 +297,7 @@ mod tests {
 
     #[test]
     fn typed_cells_become_a_text_that_reads_back_the_same() {
-        let columns =
-            [TableColumn::from("a,b"), TableColumn::from("x").in_unit("mm"), TableColumn::from("=c")];
+        let columns = [TableColumn::from("a,b"), TableColumn::from("x").in_unit("mm"), TableColumn::from("=c")];
         let mut made = MadeTable::new(3, columns).of_file("a form", None);
         made.row(5, [CellValue::Text("=1+1"), CellValue::Number(0.1 + 0.2), CellValue::Empty]);
         made.row(9, [CellValue::Text("-1.5"), CellValue::Number(-0.0), CellValue::Text("say \"hi\"")]);
@@ -310,9 +309,6 @@ mod tests {
         }
         made.frame = Some("A, B".to_owned());
         let (found, _) = text(&made.by_frame(), 1);
-        assert!(
-            found.starts_with("\"a,b\",x[mm],'=c,instrument\n'=1+1,0.30000000000000004,,\"A, B\"\n"),
-            "{found}"
-        );
+        assert!(found.starts_with("\"a,b\",x[mm],'=c,instrument\n'=1+1,0.30000000000000004,,\"A, B\"\n"), "{found}");
     }
 }

@@ -47,9 +47,7 @@ pub(crate) fn words(
         ));
     }
     let said = (unnamed > 0).then(|| {
-        format!(
-            "found {unnamed} places of its markers among those without a name, by the distances between them"
-        )
+        format!("found {unnamed} places of its markers among those without a name, by the distances between them")
     });
     (said.into_iter().collect(), warned)
 }
@@ -65,10 +63,7 @@ mod tests {
         let found = RenamedMarkers { frames, markers: vec![0, 1, 2] };
         let (said, warned) = words(&found, &["A", "B", "C"], &(8..208).collect::<Vec<_>>(), |_, _| true);
         assert!(said.is_empty());
-        assert!(
-            warned[0].starts_with("exchanged the names of `A`, `B` in one frame (line 58), where"),
-            "{warned:?}"
-        );
+        assert!(warned[0].starts_with("exchanged the names of `A`, `B` in one frame (line 58), where"), "{warned:?}");
         assert!(warned[1].starts_with("left out markers in one frame (line 68), since"), "{warned:?}");
     }
 }

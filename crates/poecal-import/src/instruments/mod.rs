@@ -59,8 +59,7 @@ pub(crate) const MEASURED: &str = "a measurement file (CSV)";
 pub(crate) const WORKBOOK: &str = "a workbook";
 pub(crate) const BAG: &str = "a ROS 2 bag";
 /// Recordings in which several bodies or markers may be.
-pub(crate) const RECORDINGS: [&str; 4] =
-    [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title, vicon::FORM.title];
+pub(crate) const RECORDINGS: [&str; 4] = [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title, vicon::FORM.title];
 
 /// Settings with which files are opened.
 #[derive(Clone, Copy)]
@@ -215,9 +214,7 @@ impl OpeningContext<'_> {
         let read = input.by_ref().take(ResourceLimit::Workbook.value() + 1).read_to_end(&mut bytes);
         read.map_err(|error| source::unreadable_error(path, &error, expected))?;
         if bytes.len() as u64 > ResourceLimit::Workbook.value() {
-            return Err(ErrorKind::File
-                .error(ResourceLimit::Workbook.exceeded_error("a workbook"))
-                .in_file(path));
+            return Err(ErrorKind::File.error(ResourceLimit::Workbook.exceeded_error("a workbook")).in_file(path));
         }
         let made = workbook::table(&bytes, self).map_err(|it| it.error(path))?;
         Ok(OpenedFile::Made(Box::new(made.of_file(WORKBOOK, Some(input.sha256())))))

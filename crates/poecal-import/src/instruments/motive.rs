@@ -45,22 +45,21 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
         head.get(at + 1).copied()
     };
     let Some(stated) = value("Length Units") else {
-        return FileLine(1).refuse("found no `Length Units` in the head of a take of Motive, expected Meters, Centimeters or Millimeters");
+        return FileLine(1).refuse(
+            "found no `Length Units` in the head of a take of Motive, expected Meters, Centimeters or Millimeters",
+        );
     };
     let Some((_, unit)) = UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(stated)) else {
-        return FileLine(1).refuse(format!(
-            "found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"
-        ));
+        return FileLine(1)
+            .refuse(format!("found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"));
     };
     let labels = Labels::from_text(text)?;
     let (bodies, unnamed) = labels.bodies(value("Rotation Type").unwrap_or("Quaternion"))?;
     let is_time = |it: &&str| it.starts_with("Time") && !it.starts_with("TimeCode");
     let Some(time) = labels.axes.iter().position(is_time) else {
-        return FileLine(labels.line)
-            .refuse("found no column `Time`, expected the time of each frame in seconds");
+        return FileLine(labels.line).refuse("found no column `Time`, expected the time of each frame in seconds");
     };
-    let frames =
-        RecordedFrames::from_lines(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
+    let frames = RecordedFrames::from_lines(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
     let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
     let frames = RecordedFrames { unnamed, are_unnamed, ..frames };
     let mut made = frames.table(&bodies, "body or marker", opening)?;
@@ -77,8 +76,7 @@ impl<'t> Labels<'t> {
         for (line, content) in lines(text).skip(1).take(12) {
             let axes = cells(content, ',');
             if axes.first() == Some(&"Frame") {
-                let with =
-                    |words: &[&str]| found.iter().position(|row| row.iter().any(|it| words.contains(it)));
+                let with = |words: &[&str]| found.iter().position(|row| row.iter().any(|it| words.contains(it)));
                 let types = with(&["Rigid Body", "Marker", "Rigid Body Marker", "Bone"]);
                 let (Some(types), Some(kinds)) = (types, with(&["Position", "Rotation"])) else { break };
                 // The names are below the types.
@@ -140,9 +138,8 @@ impl<'t> Labels<'t> {
             let quaternion = x.zip(y).zip(z.zip(w)).map(|((x, y), (z, w))| [x, y, z, w]);
             Some(RecordedBody { name: name.to_owned(), position, quaternion })
         };
-        let of = |of: &str| -> Vec<RecordedBody> {
-            self.names(of).into_iter().filter_map(|name| body(name, of)).collect()
-        };
+        let of =
+            |of: &str| -> Vec<RecordedBody> { self.names(of).into_iter().filter_map(|name| body(name, of)).collect() };
         let bodies = of("Rigid Body");
         if bodies.iter().any(|it| it.quaternion.is_none()) && !rotation.eq_ignore_ascii_case("quaternion") {
             return FileLine(1).refuse(format!(

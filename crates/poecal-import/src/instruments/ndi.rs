@@ -38,8 +38,7 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
         if cells.len() < expected {
             return Err(format!("found {} cells, expected {expected} as in the header", cells.len()));
         }
-        let part =
-            |it: Option<(usize, f64)>| it.and_then(|(at, seconds)| Some(seconds * number(cells.get(at)?)?));
+        let part = |it: Option<(usize, f64)>| it.and_then(|(at, seconds)| Some(seconds * number(cells.get(at)?)?));
         let time: Option<f64> = time.into_iter().map(part).sum();
         // The time of day restarts at midnight.
         if let (Some(time), Some(before)) = (time, before)

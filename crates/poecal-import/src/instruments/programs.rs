@@ -35,8 +35,7 @@ fn language(text: &str) -> Option<Language> {
     lines(text).take(FIRST).find_map(|(_, line)| {
         let small = line.trim().to_ascii_lowercase();
         let is_target = small.contains("jointtarget") || small.contains("robtarget");
-        if begins(&small, &["module "]) || begins(&small, &["const ", "var ", "pers ", "local "]) && is_target
-        {
+        if begins(&small, &["module "]) || begins(&small, &["const ", "var ", "pers ", "local "]) && is_target {
             return Some(Language::Rapid);
         }
         begins(&small, &["movej(", "movel(", "movep("]).then_some(Language::UrScript)
@@ -96,8 +95,7 @@ fn of_rokae(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refus
     let names = opening.robot.joint_reading_names();
     let mut made = start_table(opening, true, 1);
     for (line, content) in lines(text).filter(|it| it.1.contains("jointtarget")) {
-        let (name, values) =
-            rokae_target(content, &names).or_else(|message| FileLine(line).refuse(message))?;
+        let (name, values) = rokae_target(content, &names).or_else(|message| FileLine(line).refuse(message))?;
         let readings = values.into_iter().zip(opening.slides());
         let si = readings.map(|(value, slides)| if slides { value * 1e-3 } else { value.to_radians() });
         made.row(line, std::iter::once(CellValue::Text(name)).chain(si.map(CellValue::Number)));
@@ -111,8 +109,7 @@ fn rokae_target<'t>(line: &'t str, joints: &[String]) -> Result<(&'t str, Vec<f6
     let parts = line
         .split_once(ROKAE)
         .and_then(|(before, rest)| Some((before.split_whitespace().last()?, rest.split_once('}')?.0)));
-    let (name, inside) =
-        parts.ok_or("found a jointtarget without `= j:{…}`, expected one, as in the lines before")?;
+    let (name, inside) = parts.ok_or("found a jointtarget without `= j:{…}`, expected one, as in the lines before")?;
     let value = |text: &str| {
         let bad = || format!("found `{}` in a jointtarget, expected a number", text.trim());
         number(text).ok_or_else(bad)
@@ -124,7 +121,10 @@ fn rokae_target<'t>(line: &'t str, joints: &[String]) -> Result<(&'t str, Vec<f6
         return Err(format!("found {found} numbers of a jointtarget, expected {expected}: {names}"));
     }
     if values.iter().skip(expected).any(|it| *it != 0.0) {
-        return Err("found an axis that the model does not have and that is not at zero, expected the axes of the model".to_owned());
+        return Err(
+            "found an axis that the model does not have and that is not at zero, expected the axes of the model"
+                .to_owned(),
+        );
     }
     Ok((name, values))
 }

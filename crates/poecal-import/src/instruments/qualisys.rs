@@ -75,11 +75,7 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
 }
 
 /// Adds the orientations of bodies behind the cells of the frames; the header has `width` cells.
-fn add_orientations(
-    frames: &mut RecordedFrames<'_>,
-    bodies: &mut [RecordedBody],
-    width: usize,
-) -> Result<(), Refusal> {
+fn add_orientations(frames: &mut RecordedFrames<'_>, bodies: &mut [RecordedBody], width: usize) -> Result<(), Refusal> {
     for it in bodies.iter() {
         let start = it.position[0];
         frames.refuse_words(&it.name, &(start..start + POSED).collect::<Vec<_>>())?;
@@ -94,11 +90,7 @@ fn add_orientations(
 }
 
 /// Adds the quaternion of each body behind the cells of a frame; the header has `width` cells.
-fn add_quaternions(
-    frame: &mut RecordedFrame<'_>,
-    bodies: &[RecordedBody],
-    width: usize,
-) -> Result<(), Refusal> {
+fn add_quaternions(frame: &mut RecordedFrame<'_>, bodies: &[RecordedBody], width: usize) -> Result<(), Refusal> {
     let mut more = Vec::with_capacity(4 * bodies.len());
     for body in bodies {
         let pose = frame.numbers(std::array::from_fn::<_, POSED, _>(|at| body.position[0] + at));

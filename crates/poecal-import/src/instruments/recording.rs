@@ -33,10 +33,7 @@ impl Recording {
         let needed = if lacks_joints { one } else { other };
         let message = match (one, other) {
             (Some(one), Some(other)) if one.is_nothing && other.is_nothing => {
-                format!(
-                    "found neither joint readings nor measurements, expected both: it has {}",
-                    self.contents
-                )
+                format!("found neither joint readings nor measurements, expected both: it has {}", self.contents)
             }
             (Some(one), Some(other)) if one.is_nothing == lacks_joints => other.why.clone(),
             _ => needed.map_or_else(|| format!("it has {}", self.contents), |it| it.why.clone()),
@@ -47,9 +44,7 @@ impl Recording {
     /// Its tables, each with whether it has joint readings; a table that is left out is named with the other.
     pub(crate) fn tables(&self) -> Vec<(bool, MadeTable)> {
         let mut found = Vec::new();
-        for (is_joints, own, other) in
-            [(true, &self.joints, &self.measured), (false, &self.measured, &self.joints)]
-        {
+        for (is_joints, own, other) in [(true, &self.joints, &self.measured), (false, &self.measured, &self.joints)] {
             let Ok(table) = own else { continue };
             let mut table = table.clone();
             if let Some(missing) = other.as_ref().err().filter(|it| !it.is_nothing) {

@@ -36,12 +36,10 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
     for (line, found) in head.rows(text) {
         let values: Vec<f64> = pose.iter().map_while(|at| number(found.get(*at)?)).collect();
         let [_, _, _, a, b, c] = values[..] else {
-            return FileLine(line)
-                .refuse("found a row without X, Y, Z, rX, rY and rZ as numbers, expected them");
+            return FileLine(line).refuse("found a row without X, Y, Z, rX, rY and rZ as numbers, expected them");
         };
         if [a, b, c].iter().any(|it| it.abs() > 7.0) {
-            return FileLine(line)
-                .refuse("found an angle beyond 7, expected radians, as RoboDK's script writes them");
+            return FileLine(line).refuse("found an angle beyond 7, expected radians, as RoboDK's script writes them");
         }
         let turn = |axis: Vector3<f64>, angle: f64| rotation::exp(&(axis * angle));
         let turned = turn(Vector3::x(), a) * turn(Vector3::y(), b) * turn(Vector3::z(), c);

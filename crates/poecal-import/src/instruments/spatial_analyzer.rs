@@ -53,12 +53,10 @@ fn is_it(text: &str, _: &OpeningContext<'_>) -> bool {
 fn table(text: &str, _: &OpeningContext<'_>) -> Result<MadeTable, Refusal> {
     let Comments { frame, is_cylindrical, unit } = Comments::from_text(text)?;
     let points = lines(text).filter(|it| comment(it.1).is_none());
-    let point = |(line, content): (usize, _)| {
-        PointLine::from_line(line, content).or_else(|why| FileLine(line).refuse(why))
-    };
+    let point =
+        |(line, content): (usize, _)| PointLine::from_line(line, content).or_else(|why| FileLine(line).refuse(why));
     let points: Vec<PointLine<'_>> = points.map(point).collect::<Result<_, _>>()?;
-    let first =
-        points.first().ok_or("found comments of SpatialAnalyzer and no point, expected at least one")?;
+    let first = points.first().ok_or("found comments of SpatialAnalyzer and no point, expected at least one")?;
     refuse_unlike(first, &points)?;
     let layout = PointColumns::from_points(first, &points).or_else(|why| FileLine(first.line).refuse(why))?;
     let (names, have_targets) = layout.names(&points);
@@ -153,9 +151,8 @@ impl<'t> Comments<'t> {
             return FileLine(line).refuse("found no unit in brackets, as `(mm)`, expected one");
         }
         if is_cylindrical && !is_degrees {
-            return FileLine(line).refuse(
-                "found angles in another unit than degrees, expected deg: export the points as Cartesian",
-            );
+            return FileLine(line)
+                .refuse("found angles in another unit than degrees, expected deg: export the points as Cartesian");
         }
         Ok(Comments { frame, is_cylindrical, unit })
     }
@@ -185,15 +182,11 @@ impl<'t> PointLine<'t> {
             return Err("found `;` between the cells of a point, expected commas or blanks: export the points again, or replace it".to_owned());
         }
         let is_by_commas = content.contains(',');
-        let mut parts: Vec<&str> = if is_by_commas {
-            cells(content, Separator::Comma)
-        } else {
-            content.split_whitespace().collect()
-        };
+        let mut parts: Vec<&str> =
+            if is_by_commas { cells(content, Separator::Comma) } else { content.split_whitespace().collect() };
         // The time, `02/12/25 16:52:45`, is one cell or two.
-        let is_time = |it: &&str| {
-            it.contains('/') || it.contains(':') && !it.contains("::") || matches!(*it, "AM" | "PM")
-        };
+        let is_time =
+            |it: &&str| it.contains('/') || it.contains(':') && !it.contains("::") || matches!(*it, "AM" | "PM");
         let end = parts.iter().rposition(|it| !is_time(it)).map_or(0, |it| it + 1);
         let has_time = end < parts.len();
         parts.truncate(end);

@@ -33,10 +33,7 @@ struct Sets<'t> {
 }
 
 fn coordinate_name(word: &str) -> Option<CoordinateName> {
-    let of = [
-        (ColumnRole::MeasuredSet, CoordinateName::Measured),
-        (ColumnRole::NominalSet, CoordinateName::Nominal),
-    ];
+    let of = [(ColumnRole::MeasuredSet, CoordinateName::Measured), (ColumnRole::NominalSet, CoordinateName::Nominal)];
     of.into_iter().find(|it| it.0.has(word)).map(|it| it.1)
 }
 
@@ -91,11 +88,8 @@ fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<SetColumn>, [CoordinateNam
         of_sets.push(place.map_or(SetColumn::Angle, |it| SetColumn::Place(set, it)));
     }
     let has_all = |seen: &Vec<&str>| PLACE.iter().all(|it| seen.contains(it));
-    let called = if are_named {
-        [CoordinateName::Nominal, CoordinateName::Measured]
-    } else {
-        [CoordinateName::Unnamed; 2]
-    };
+    let called =
+        if are_named { [CoordinateName::Nominal, CoordinateName::Measured] } else { [CoordinateName::Unnamed; 2] };
     (seen.iter().all(has_all) && seen[0].len() == seen[1].len()).then_some((of_sets, called))
 }
 
@@ -210,9 +204,7 @@ mod tests {
         let text = "Measured,,,Nominal,,\nx[mm],y[mm],z[mm],x[mm],y[mm],z[mm]\n1,2,3,4,5,6\n";
         let Ok(made) = Sets::of_text(text).unwrap().table(text, 1) else { panic!() };
         assert_eq!(made.rows(), 1);
-        for text in
-            ["joint1,joint2,x,y,z\n1,2,3,4,5\n", "x,y,z,a,b,c\n", "nominal x,nominal y,x,y,z\n", "1,2,3\n"]
-        {
+        for text in ["joint1,joint2,x,y,z\n1,2,3,4,5\n", "x,y,z,a,b,c\n", "nominal x,nominal y,x,y,z\n", "1,2,3\n"] {
             assert!(Sets::of_text(text).is_none(), "{text}");
         }
     }

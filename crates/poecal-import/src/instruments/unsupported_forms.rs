@@ -42,8 +42,7 @@ pub(crate) fn find_refusal(text: &str) -> Option<&'static str> {
         );
     }
     let begins = |start: &str| lines(text).take(FIRST).any(|it| it.1.trim_start().starts_with(start));
-    let named =
-        KINDS.iter().find(|it| if it.0.starts_with('<') { begins(it.0) } else { first.starts_with(it.0) });
+    let named = KINDS.iter().find(|it| if it.0.starts_with('<') { begins(it.0) } else { first.starts_with(it.0) });
     if let Some((_, words)) = named {
         return Some(words);
     }

@@ -69,9 +69,8 @@ impl ViconHead<'_> {
 
     /// Bodies or markers: each begins at the column with its name.
     fn bodies(&self) -> Vec<(RecordedBody, Option<Vec<usize>>)> {
-        let starts: Vec<usize> = (0..self.columns.len())
-            .filter(|at| self.names.get(*at).is_some_and(|it| !it.is_empty()))
-            .collect();
+        let starts: Vec<usize> =
+            (0..self.columns.len()).filter(|at| self.names.get(*at).is_some_and(|it| !it.is_empty())).collect();
         let ends = starts.iter().skip(1).copied().chain([self.columns.len()]);
         let body = |(start, end): (usize, usize)| {
             let at = |names: &[&str]| -> Option<Vec<usize>> {
@@ -93,12 +92,13 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
     let head = head(text).ok_or("found no head of Vicon")?;
     let found = head.bodies();
     if found.is_empty() {
-        return FileLine(head.line).refuse("found no columns TX, TY, TZ or X, Y, Z below the names of Vicon's segments or markers, expected them");
+        return FileLine(head.line).refuse(
+            "found no columns TX, TY, TZ or X, Y, Z below the names of Vicon's segments or markers, expected them",
+        );
     }
     let length = head.unit(found.iter().flat_map(|it| it.0.position), "positions")?.unwrap_or_default();
     let Some(unit) = UNITS.into_iter().find(|it| it.0 == length) else {
-        return FileLine(head.line + 1)
-            .refuse(format!("found the unit `{length}` of positions, expected mm, cm or m"));
+        return FileLine(head.line + 1).refuse(format!("found the unit `{length}` of positions, expected mm, cm or m"));
     };
     let angle = head.unit(found.iter().filter_map(|it| it.1.as_ref()).flatten().copied(), "rotations")?;
     let to_rad = match angle {
@@ -111,18 +111,14 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
     };
     let (expected, rate_hz) = (head.columns.len(), head.rate_hz);
     let own: usize = text.split_inclusive('\n').take(head.end - 1).map(str::len).sum();
-    let mut frames = RecordedFrames::from_lines(
-        text.get(..own).unwrap_or(text),
-        (head.line + 1, unit),
-        ',',
-        |cells, count, _| {
+    let mut frames =
+        RecordedFrames::from_lines(text.get(..own).unwrap_or(text), (head.line + 1, unit), ',', |cells, count, _| {
             if cells.len() > expected {
                 return Err(format!("found {} cells, expected {expected} as in the head", cells.len()));
             }
             let frame = cells.first().copied().and_then(number).unwrap_or(count as f64 + 1.0);
             Ok(Some((frame - 1.0) / rate_hz))
-        },
-    )?;
+        })?;
     let mut bodies: Vec<RecordedBody> = Vec::with_capacity(found.len());
     let mut width = expected;
     for (mut body, turn) in found {
@@ -131,8 +127,7 @@ fn table(text: &str, opening: &OpeningContext<'_>) -> Result<MadeTable, Refusal>
             for frame in &mut frames.all {
                 let vector = frame.numbers(columns).map(|it| Vector3::from(it) * to_rad);
                 frame.cells.resize(width, CellValue::Empty);
-                let turned =
-                    vector.map(|it| Pose::new(rotation::exp(&it), Vector3::zeros()).quaternion_xyzw());
+                let turned = vector.map(|it| Pose::new(rotation::exp(&it), Vector3::zeros()).quaternion_xyzw());
                 frame.cells.extend(turned.map_or([CellValue::Empty; 4], |it| it.map(CellValue::Number)));
             }
             body.quaternion = Some([0, 1, 2, 3].map(|part| width + part));

@@ -92,8 +92,7 @@ pub(crate) fn repeats(names: &[String], lines: &[usize]) -> Option<String> {
         .into_iter()
         .filter(|(_, rows)| rows.len() > 1)
         .map(|(name, rows)| {
-            let own: Vec<String> =
-                rows.iter().filter_map(|at| lines.get(*at)).map(usize::to_string).collect();
+            let own: Vec<String> = rows.iter().filter_map(|at| lines.get(*at)).map(usize::to_string).collect();
             format!("`{name}` in {}", number_lines(&own))
         })
         .collect();
@@ -111,6 +110,5 @@ fn by_name(names: &[String]) -> BTreeMap<&str, Vec<usize>> {
 
 /// True if a cell has a word that means no number, such as `NaN`.
 pub(crate) fn is_no_number(text: &str) -> bool {
-    ["nan", "-nan", "inf", "-inf", "+inf", "null", "none", "n/a"]
-        .contains(&text.trim().to_ascii_lowercase().as_str())
+    ["nan", "-nan", "inf", "-inf", "+inf", "null", "none", "n/a"].contains(&text.trim().to_ascii_lowercase().as_str())
 }

@@ -12,7 +12,8 @@ use crate::table::times::seconds_of;
 /// Seconds of a day, the unit of times in workbooks.
 const DAY_S: f64 = 86_400.0;
 /// Remedy for formulas without results.
-const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
+const REMEDY: &str =
+    "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
 
 /// Refuses formulas of a table without a result, or with 0 in the whole column: some programs do not compute them. The pair is the rows, and the
 /// columns with their names. A form of workbook whose formulas cannot be read always has results.

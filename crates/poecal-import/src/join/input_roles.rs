@@ -16,18 +16,12 @@ use poecal_numerics::error::{Error, ErrorKind, MissingColumn};
 
 /// True if a file has joint readings by picture. A file that cannot be read is refused when it is read.
 pub(crate) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnMap) -> bool {
-    let table =
-        LineBlocks::open_or_join(path, MEASURED).and_then(|blocks| FileTable::open(path, blocks, map));
+    let table = LineBlocks::open_or_join(path, MEASURED).and_then(|blocks| FileTable::open(path, blocks, map));
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
 }
 
 /// The error of a file with joint readings only, or measurements only, without a counterpart.
-pub(crate) fn lone_file_error(
-    error: Error,
-    path: &Path,
-    opening: &OpeningContext<'_>,
-    map: &ColumnMap,
-) -> Error {
+pub(crate) fn lone_file_error(error: Error, path: &Path, opening: &OpeningContext<'_>, map: &ColumnMap) -> Error {
     let Some(missing) = error.missing_column() else { return error };
     let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.part) {
         Ok(FileRole::Joints) => (true, "joint readings and nothing that was measured", "measurements"),
@@ -40,16 +34,14 @@ pub(crate) fn lone_file_error(
     let names = opening.robot.reading_names();
     let is_all = is_lone && table.header.cells.iter().all(|it| names.contains(&it.name) || it.name == "id");
     if table.is_made() || is_all {
-        let message =
-            format!("found {found}, expected both: name the file of the {other} beside it{}", advice(path));
+        let message = format!("found {found}, expected both: name the file of the {other} beside it{}", advice(path));
         return Error::new(ErrorKind::Measurement, message).in_file(path);
     }
     // A column with a name like a missing one may be it under another name.
     let header = || table.header.cells.iter();
     let is_axis = |it: &HeaderCell| {
         let mut letters = it.name.chars().map(|it| it.to_ascii_lowercase());
-        letters.next().is_some_and(|it| "xyz".contains(it))
-            && !letters.next().is_some_and(char::is_alphanumeric)
+        letters.next().is_some_and(|it| "xyz".contains(it)) && !letters.next().is_some_and(char::is_alphanumeric)
     };
     let says_it = if is_lone {
         missing == MissingColumn::Position && !header().any(is_axis)

@@ -11,12 +11,7 @@ use poecal_numerics::error::Result;
 
 impl Pairing<'_> {
     /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` if the user confirmed them.
-    pub(crate) fn judge_order(
-        &self,
-        pairs: &[RowPair],
-        how: Join,
-        is_stated: bool,
-    ) -> Result<JoinedReadings> {
+    pub(crate) fn judge_order(&self, pairs: &[RowPair], how: Join, is_stated: bool) -> Result<JoinedReadings> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
         let (by_name, _) = join_names(how);
         let found = self.rows.agreement(pairs);
@@ -34,10 +29,7 @@ impl Pairing<'_> {
             }
             _ => String::new(),
         };
-        let note = format!(
-            "{joints} and {path} were joined {by_name}: {}{missed}",
-            count_configurations(pairs.len())
-        );
+        let note = format!("{joints} and {path} were joined {by_name}: {}{missed}", count_configurations(pairs.len()));
         warnings.extend(found.and_then(|_| self.wrong_pairs(pairs)));
         warnings.extend(self.without_partner(pairs));
         let entry = self.entry(how, pairs, found.as_ref().map(Agreement::missed_m));

@@ -12,19 +12,14 @@ const NEAR_STANDS_S: f64 = 0.3;
 
 impl Pairing<'_> {
     /// The join at the best of the lags at which static intervals of two streams agree, of which there are `joints` and `shots`.
-    pub(crate) fn by_lag(
-        &self,
-        found: &[LaggedPairs],
-        (joints, shots): (usize, usize),
-    ) -> Result<JoinedReadings> {
+    pub(crate) fn by_lag(&self, found: &[LaggedPairs], (joints, shots): (usize, usize)) -> Result<JoinedReadings> {
         let stated = if self.lag.is_some() { " near the stated one" } else { "" };
         let Some(best) = found.first() else {
             return self.refuse(format!(
                 "found {joints} stands of the robot and {shots} of the measurements, and no lag of the clocks{stated} at which {FEWEST_PAIRS} of them or more are the same, expected a recording of the same motion"
             ));
         };
-        let alike: Vec<&LaggedPairs> =
-            found.iter().filter(|it| it.missed_m < EVIDENT * best.missed_m).collect();
+        let alike: Vec<&LaggedPairs> = found.iter().filter(|it| it.missed_m < EVIDENT * best.missed_m).collect();
         // The lag at which most static intervals agree explains why none fits.
         let most = found.iter().max_by_key(|it| it.pairs.len()).unwrap_or(best);
         let is_one = alike.len() == 1 && 2 * most.pairs.len() <= 3 * best.pairs.len();

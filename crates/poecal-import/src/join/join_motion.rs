@@ -10,8 +10,7 @@ use super::join_words::{mm, several_lags};
 use crate::{Join, Lag};
 use poecal_fit::input_doubts::joined_rows::{self, is_doubtful, reason};
 use poecal_fit::start::{
-    JointStream, LagFailure, LaggedMeasurements, MotionMeasurements, MotionRecording, motion_of_target,
-    smooth_times,
+    JointStream, LagFailure, LaggedMeasurements, MotionMeasurements, MotionRecording, motion_of_target, smooth_times,
 };
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
@@ -62,12 +61,7 @@ pub(crate) fn in_motion(
     match found {
         Ok(found) => {
             let warning = at_rest(found.clock.lag_s).map(|rows| {
-                joined_rows::warning(
-                    robot,
-                    found.missed_m,
-                    || rows,
-                    &format!("at a lag of {:.3} s", found.clock.lag_s),
-                )
+                joined_rows::warning(robot, found.missed_m, || rows, &format!("at a lag of {:.3} s", found.clock.lag_s))
             });
             let mut joined = join_motion(joints, (path, data, times), robot, (stamps, &found));
             match warning.transpose() {
@@ -118,8 +112,7 @@ fn search(
             return refuse_pair(
                 joints,
                 path,
-                "found joint readings without times of their own, expected a column `time` in both files"
-                    .to_owned(),
+                "found joint readings without times of their own, expected a column `time` in both files".to_owned(),
             );
         };
         let motion = MotionRecording::new(robot, &stream, data, seen).map_err(|error| error.in_file(path))?;

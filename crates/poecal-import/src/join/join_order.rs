@@ -59,8 +59,7 @@ impl Pairing<'_> {
                 "{counts}, expected as many, or names in both (a column `id`): no order fits evidently better than others"
             ));
         }
-        let mut warnings: Vec<String> =
-            self.refuse_doubtful(*missed_m, pairs, "in their order")?.into_iter().collect();
+        let mut warnings: Vec<String> = self.refuse_doubtful(*missed_m, pairs, "in their order")?.into_iter().collect();
         let (own, path) = (self.joints.path.display(), self.path.display());
         if !repeated.is_empty() {
             warnings.push(self.describe_repeated(repeated));
@@ -87,12 +86,7 @@ impl Pairing<'_> {
     ///
     /// # Errors
     /// The error is larger than that of any robot, and has no explanation.
-    pub(crate) fn refuse_doubtful(
-        &self,
-        missed_m: f64,
-        pairs: &[RowPair],
-        how: &str,
-    ) -> Result<Option<String>> {
+    pub(crate) fn refuse_doubtful(&self, missed_m: f64, pairs: &[RowPair], how: &str) -> Result<Option<String>> {
         let joined = || self.rows.session_of(pairs);
         match joined_rows::warning(self.robot, missed_m, joined, how) {
             Ok(warning) => {

@@ -73,10 +73,7 @@ impl JointRows {
                 .stream
                 .as_ref()
                 .map(|it| it.map(|at, value| of((&value, self.turns.get(at).unwrap_or(&false))))),
-            sampled: self
-                .sampled
-                .as_ref()
-                .map(|it| it.map(|row| row.iter().zip(&self.turns).map(of).collect())),
+            sampled: self.sampled.as_ref().map(|it| it.map(|row| row.iter().zip(&self.turns).map(of).collect())),
             ..self.clone()
         }
     }
@@ -112,12 +109,7 @@ pub(crate) struct JoinedReadings {
 
 impl<'a> Pairing<'a> {
     /// A pairing of lists, without clocks.
-    pub(crate) fn of_lists(
-        joints: &'a JointRows,
-        path: &'a Path,
-        data: &'a Dataset,
-        robot: &'a Robot,
-    ) -> Self {
+    pub(crate) fn of_lists(joints: &'a JointRows, path: &'a Path, data: &'a Dataset, robot: &'a Robot) -> Self {
         let rows = UnpairedRows::new(robot, &joints.readings, data);
         Pairing { joints, path, data, rows, robot, spans: None, lag: None, no_stands: None, stream: None }
     }
@@ -170,8 +162,7 @@ impl<'a> Pairing<'a> {
         // Equal numbers of rows may hide that one row was lost and another one taken twice.
         let wrong = self.rows.find_wrong_pairs(&pairs).0.len();
         if wrong >= FEW_WRONG
-            && let Some(found) =
-                self.rows.align_lists().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
+            && let Some(found) = self.rows.align_lists().filter(|it| it.unread.is_empty() && !it.repeated.is_empty())
             && self.rows.find_wrong_pairs(&found.pairs).0.len() < wrong
         {
             return self.join_aligned(Some(found));
@@ -200,9 +191,8 @@ impl<'a> Pairing<'a> {
             let other = partners.partner(name)?;
             self.joints.ids.iter().position(|it| it == other)
         };
-        let pairs: Vec<RowPair> = (seen.iter().enumerate())
-            .filter_map(|(shot, name)| Some((row_of(name.as_ref()?)?, shot)))
-            .collect();
+        let pairs: Vec<RowPair> =
+            (seen.iter().enumerate()).filter_map(|(shot, name)| Some((row_of(name.as_ref()?)?, shot))).collect();
         (2 * pairs.len() >= seen.len() && !pairs.is_empty()).then_some(pairs)
     }
 
@@ -236,8 +226,7 @@ impl<'a> Pairing<'a> {
     }
 
     pub(crate) fn readings(&self, pairs: &[RowPair]) -> ReadingsByLine {
-        let mut found =
-            ReadingsByLine { controller: self.joints.controller.clone(), ..ReadingsByLine::default() };
+        let mut found = ReadingsByLine { controller: self.joints.controller.clone(), ..ReadingsByLine::default() };
         for (joint, shot) in pairs {
             for &row in self.rows.shots().get(*shot).into_iter().flatten() {
                 if let Some(observation) = self.data.observations.get(row as usize) {

@@ -146,8 +146,7 @@ impl<'p> JoinPlan<'p> {
 /// Refuses a requested topic that no file has.
 fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &ReadOptions) -> Result<()> {
     for (at, name) in options.topics.iter().enumerate() {
-        let found =
-            recordings.iter().flatten().filter_map(|it| it.has_topic.get(at).copied().flatten()).max();
+        let found = recordings.iter().flatten().filter_map(|it| it.has_topic.get(at).copied().flatten()).max();
         if found == Some(true) {
             continue;
         }
@@ -234,13 +233,10 @@ fn part_of<'p>(
     let (part, why) = match (joints, measured) {
         (Ok(_), Err(_)) => (FileRole::Joints, None),
         (Err(_), Ok(layout)) => {
-            let is_named =
-                layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
+            let is_named = layout.target_column.is_some() || layout.targets.len() > 1 || map.target_name.is_some();
             (FileRole::Measured { is_named }, None)
         }
-        (Err(as_joints), Err(as_measured)) => {
-            (FileRole::Whole, Some(UnusableFile { as_joints, as_measured }))
-        }
+        (Err(as_joints), Err(as_measured)) => (FileRole::Whole, Some(UnusableFile { as_joints, as_measured })),
         // Columns by number are those of the file without joint readings.
         (Ok(_), Ok(_)) if !map.names_joints() && map.measured_numbers().is_some() => (FileRole::Joints, None),
         (Ok(_), Ok(_)) => (FileRole::Whole, None),

@@ -14,11 +14,7 @@ pub(crate) fn several_lags(listed: &[String], best_s: f64) -> String {
 
 /// Configurations in words.
 pub(crate) fn count_configurations(configurations: usize) -> String {
-    if configurations == 1 {
-        "one configuration".to_owned()
-    } else {
-        format!("{configurations} configurations")
-    }
+    if configurations == 1 { "one configuration".to_owned() } else { format!("{configurations} configurations") }
 }
 
 /// An order in words.

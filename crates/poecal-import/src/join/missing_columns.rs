@@ -61,9 +61,7 @@ impl Header<'_> {
         }
         let numbers = self.cells.iter().filter(|cell| is_number(&cell.text)).count();
         if 2 * numbers > self.cells.len() {
-            return Some(
-                "the line holds mostly numbers: put a line above it that names the columns".to_owned(),
-            );
+            return Some("the line holds mostly numbers: put a line above it that names the columns".to_owned());
         }
         match self.cells.as_slice() {
             [only] if only.text.len() > name.len() && only.text.contains(name) => Some(format!(

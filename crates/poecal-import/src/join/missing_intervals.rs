@@ -14,11 +14,7 @@ pub(crate) enum MissingIntervals {
 
 impl MissingIntervals {
     /// The reason by the defect of the rows' times, with their lines; a list if there is none.
-    pub(crate) fn from_times(
-        why: Option<StreamFailure>,
-        times: &[f64],
-        line: impl Fn(usize) -> Option<usize>,
-    ) -> Self {
+    pub(crate) fn from_times(why: Option<StreamFailure>, times: &[f64], line: impl Fn(usize) -> Option<usize>) -> Self {
         let Some(why) = why else { return MissingIntervals::Listed };
         let line = |row: usize| line(row).unwrap_or_default();
         let back = if let StreamFailure::Back(row) = why { Some(line(row)) } else { None };

@@ -21,12 +21,7 @@ const MORE: f64 = 5.0;
 
 impl JoinPlan<'_> {
     /// Chooses the measured set of each file with two sets.
-    pub(crate) fn settle_sets(
-        &mut self,
-        robot: &Robot,
-        options: &ReadOptions,
-        map: &ColumnMap,
-    ) -> Result<()> {
+    pub(crate) fn settle_sets(&mut self, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Result<()> {
         let mut of_joints = self.files.iter().position(|it| it.part == FileRole::Joints);
         for at in 0..self.files.len() {
             let Some(planned) = self.files.get(at) else { continue };
@@ -63,25 +58,15 @@ impl MeasurementReader<'_> {
     }
 
     /// The set that was measured, in a file whose joint readings are in another.
-    fn measured_set(
-        &self,
-        planned: &PlannedFile<'_>,
-        sets: [MadeTable; 2],
-        joints: &JointRows,
-    ) -> Result<MadeTable> {
+    fn measured_set(&self, planned: &PlannedFile<'_>, sets: [MadeTable; 2], joints: &JointRows) -> Result<MadeTable> {
         let path = planned.path;
         let missed = |table: &MadeTable, joints: &JointRows| -> Result<Option<f64>> {
             let map = &planned.map;
-            let mut reader =
-                MeasurementReader { map, ..MeasurementReader::new(self.robot, self.options, map) };
+            let mut reader = MeasurementReader { map, ..MeasurementReader::new(self.robot, self.options, map) };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             let data = &reader.found.data;
             let pairing = Pairing::of_lists(joints, path, data, self.robot);
-            Ok(pairing
-                .find_readings(self.options.join)
-                .ok()
-                .and_then(|it| it.entry.missed_mm)
-                .map(|it| 1e-3 * it))
+            Ok(pairing.find_readings(self.options.join).ok().and_then(|it| it.entry.missed_mm).map(|it| 1e-3 * it))
         };
         let mut errors = [missed(&sets[0], joints)?, missed(&sets[1], joints)?];
         if joints.is_without_unit && errors == [None, None] {
@@ -94,10 +79,8 @@ impl MeasurementReader<'_> {
     /// The measured set of a file that has its joint readings.
     fn measured_set_of_whole(&self, path: &Path, sets: [MadeTable; 2]) -> Result<MadeTable> {
         let missed = |table: &MadeTable| -> Result<Option<f64>> {
-            let mut reader = MeasurementReader {
-                map: self.map,
-                ..MeasurementReader::new(self.robot, self.options, self.map)
-            };
+            let mut reader =
+                MeasurementReader { map: self.map, ..MeasurementReader::new(self.robot, self.options, self.map) };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             Ok(self.fit_m(&reader.found.data))
         };
@@ -138,10 +121,7 @@ fn choose_set(path: &Path, sets: [MadeTable; 2], errors: [Option<f64>; 2]) -> Re
     };
     let [first, second] = sets;
     let (mut table, why) = (if at == 0 { first } else { second }, format!("{}, {}", words(0), words(1)));
-    table.said.insert(
-        0,
-        format!("took the {} of two sets of coordinates; the nominal robot misses {why}", names[at]),
-    );
+    table.said.insert(0, format!("took the {} of two sets of coordinates; the nominal robot misses {why}", names[at]));
     Ok(table)
 }
 

@@ -25,12 +25,7 @@ const SHIFTS: [isize; 2] = [1, -1];
 
 impl ColumnLayout {
     /// The layout with every number taken from `by` columns further to the right, if a measured number is there, not a count.
-    pub(crate) fn shift_columns(
-        mut self,
-        by: isize,
-        header: &Header<'_>,
-        separator: Separator,
-    ) -> Option<Self> {
+    pub(crate) fn shift_columns(mut self, by: isize, header: &Header<'_>, separator: Separator) -> Option<Self> {
         let row = header.first_row()?;
         let mut cells = Vec::new();
         split(&row, separator, &mut cells).ok()?;
@@ -77,9 +72,8 @@ impl MeasurementReader<'_> {
         let readings: Vec<f64> = (0..data.len()).flat_map(|row| data.readings(row).to_vec()).collect();
         let rows = UnpairedRows::new(self.robot, &readings, data);
         // Targets that are seen in one configuration have separate rows.
-        let pairs: Vec<RowPair> = (rows.shots().iter().enumerate())
-            .filter_map(|(shot, of)| Some((*of.first()? as usize, shot)))
-            .collect();
+        let pairs: Vec<RowPair> =
+            (rows.shots().iter().enumerate()).filter_map(|(shot, of)| Some((*of.first()? as usize, shot))).collect();
         match rows.agreement(&pairs) {
             Some(Agreement::Right { missed_m }) => Some(missed_m),
             _ => None,
@@ -102,8 +96,7 @@ impl MeasurementReader<'_> {
         };
         let fit = |shift: isize| {
             let map = self.map;
-            let mut reader =
-                MeasurementReader { map, shift, ..MeasurementReader::new(self.robot, self.options, map) };
+            let mut reader = MeasurementReader { map, shift, ..MeasurementReader::new(self.robot, self.options, map) };
             reader.rows_alone(path, blocks()?).ok()?;
             self.fit_m(&reader.found.data)
         };
@@ -132,8 +125,7 @@ impl MeasurementReader<'_> {
     ) -> Error {
         let is_placed = error.place().is_some_and(|it| it.line.is_some());
         // Rows of recordings are not joined by their order.
-        let is_stream =
-            matches!(self.options.join, Some(Join::Time | Join::Motion)) || joints.lines.len() > MOST_ROWS;
+        let is_stream = matches!(self.options.join, Some(Join::Time | Join::Motion)) || joints.lines.len() > MOST_ROWS;
         if error.kind() != ErrorKind::Measurement || is_placed || is_stream {
             return error;
         }
@@ -149,8 +141,7 @@ impl MeasurementReader<'_> {
         };
         for shift in SHIFTS {
             let map = &planned.map;
-            let mut reader =
-                MeasurementReader { map, shift, ..MeasurementReader::new(self.robot, self.options, map) };
+            let mut reader = MeasurementReader { map, shift, ..MeasurementReader::new(self.robot, self.options, map) };
             let read = planned.blocks(self.opening_context(), MEASURED);
             if let Ok(()) = read.and_then(|blocks| reader.rows_alone(planned.path, blocks))
                 && let Some(missed_m) = fit(joints, &reader.found.data)
@@ -158,12 +149,10 @@ impl MeasurementReader<'_> {
                 return shifted_header_error(planned.path, reader.header_line, shift, missed_m);
             }
             let Some(of_joints) = of_joints else { continue };
-            let mut reader =
-                MeasurementReader { shift, ..MeasurementReader::new(self.robot, self.options, self.map) };
+            let mut reader = MeasurementReader { shift, ..MeasurementReader::new(self.robot, self.options, self.map) };
             let Ok(others) = reader.joint_rows(of_joints) else { continue };
             let line = reader.header_line;
-            let mut reader =
-                MeasurementReader { map, ..MeasurementReader::new(self.robot, self.options, map) };
+            let mut reader = MeasurementReader { map, ..MeasurementReader::new(self.robot, self.options, map) };
             let read = planned.blocks(self.opening_context(), MEASURED);
             if let Ok(()) = read.and_then(|blocks| reader.rows_alone(planned.path, blocks))
                 && let Some(missed_m) = fit(&others, &reader.found.data)

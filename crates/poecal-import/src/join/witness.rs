@@ -10,12 +10,7 @@ use poecal_numerics::error::Result;
 ///
 /// # Errors
 /// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) if a reading has a name that no column can have.
-pub fn to_measure_again(
-    data: &Dataset,
-    configurations: &[Vec<u32>],
-    robot: &Robot,
-    are_new: bool,
-) -> Result<String> {
+pub fn to_measure_again(data: &Dataset, configurations: &[Vec<u32>], robot: &Robot, are_new: bool) -> Result<String> {
     let mut out = if are_new {
         "# New configurations: measure them now, and judge later visits by `poecal track --reference` with this one.\n"
     } else {
@@ -24,8 +19,7 @@ pub fn to_measure_again(
     .to_owned();
     let sees = |row: &u32| data.observations[*row as usize].measurement.sees_orientation();
     let columns = [OwnColumn::Joints, OwnColumn::Target, OwnColumn::Instrument, OwnColumn::Position];
-    let rows =
-        SessionTableRows::new(data, robot, &columns)?.left_empty(configurations.iter().flatten().any(sees));
+    let rows = SessionTableRows::new(data, robot, &columns)?.left_empty(configurations.iter().flatten().any(sees));
     out += &rows.header();
     out.push('\n');
     for (number, configuration) in configurations.iter().enumerate() {
@@ -44,8 +38,7 @@ mod tests {
 
     #[test]
     fn readings_have_four_decimals() {
-        let made =
-            Simulation { count: 6, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
+        let made = Simulation { count: 6, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
         let data = made.data.as_if_at(&[0], &[0.123_456_789; 6], 6).unwrap();
         let text = to_measure_again(&data, &[vec![0]], &made.nominal, false).unwrap();
         assert_eq!(text.lines().last(), Some("1,7.0736,7.0736,7.0736,7.0736,7.0736,7.0736,,,"), "{text}");

@@ -45,16 +45,13 @@ impl MeasurementReader<'_> {
     /// The rows of corners of the messages; errors name no file.
     fn corners_of_messages(&mut self, text: &str) -> Result<MadeTable> {
         let nodes = parsed_message::nodes(text)?;
-        let messages: Vec<ParsedMessage<'_>> =
-            nodes.iter().map(parsed_message::message).collect::<Result<_>>()?;
+        let messages: Vec<ParsedMessage<'_>> = nodes.iter().map(parsed_message::message).collect::<Result<_>>()?;
         let Some(first) = messages.first() else {
-            return ErrorKind::Measurement
-                .refuse(format!("found no message, expected {}", parsed_message::EXPECTED));
+            return ErrorKind::Measurement.refuse(format!("found no message, expected {}", parsed_message::EXPECTED));
         };
         let joints = self.joints_of(first)?;
         let mut bodies = MessageBodies::default();
-        let pictures: Vec<SortedMessage<'_>> =
-            messages.iter().map(|it| bodies.take(it)).collect::<Result<_>>()?;
+        let pictures: Vec<SortedMessage<'_>> = messages.iter().map(|it| bodies.take(it)).collect::<Result<_>>()?;
         bodies.refuse_moving()?;
         let camera = self.take_cameras(&messages)?;
         if self.cameras.is_empty() {
@@ -189,9 +186,8 @@ impl MeasurementReader<'_> {
             names.push(format!("`{name}` ({} points of the sensor {}){link}", points.len(), body.sensor));
             match self.boards.iter().find(|own| own.name == *name) {
                 Some(own) if own.points != *points => {
-                    return ErrorKind::Measurement.refuse(format!(
-                        "found other points of the board `{name}` than before, expected the same"
-                    ));
+                    return ErrorKind::Measurement
+                        .refuse(format!("found other points of the board `{name}` than before, expected the same"));
                 }
                 Some(_) => {}
                 None => self.boards.push(body.board.clone()),
@@ -241,9 +237,9 @@ fn readings(message: &ParsedMessage<'_>, joints: &MessageJoints) -> Result<Vec<f
         let Some((_, value)) = message.joints.iter().find(|(own, _)| own == name) else {
             let names: Vec<&str> = message.joints.iter().map(|it| it.0).collect();
             let names = first_few(&names);
-            return message.node.refuse(format!(
-                "found no joint `{name}` in `joint_states` ({names}), expected it in each message"
-            ));
+            return message
+                .node
+                .refuse(format!("found no joint `{name}` in `joint_states` ({names}), expected it in each message"));
         };
         readings.push(*value);
     }

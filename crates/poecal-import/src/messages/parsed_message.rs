@@ -97,11 +97,7 @@ pub(crate) fn message(node: &YamlNode) -> Result<ParsedMessage<'_>> {
         joints.push((own, number(position, own)?));
     }
     let observations = list(require_key(node, "observations")?, "observations")?;
-    Ok(ParsedMessage {
-        node,
-        joints,
-        observations: observations.iter().map(observation).collect::<Result<_>>()?,
-    })
+    Ok(ParsedMessage { node, joints, observations: observations.iter().map(observation).collect::<Result<_>>()? })
 }
 
 fn observation(node: &YamlNode) -> Result<SensorObservation<'_>> {
@@ -203,8 +199,8 @@ fn number(node: &YamlNode, name: &str) -> Result<f64> {
     }
     match text.parse::<f64>() {
         Ok(number) if number.abs() <= LARGEST_NUMBER => Ok(number),
-        _ => node.refuse(format!(
-            "found `{text}` for `{name}`, expected a finite number of at most {LARGEST_NUMBER:e}"
-        )),
+        _ => {
+            node.refuse(format!("found `{text}` for `{name}`, expected a finite number of at most {LARGEST_NUMBER:e}"))
+        }
     }
 }

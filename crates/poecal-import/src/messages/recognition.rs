@@ -8,8 +8,7 @@ use super::parsed_message::EXPECTED;
 use crate::table::configurations::advice;
 
 /// Beginnings of messages.
-const BEGINNINGS: [&str; 6] =
-    ["---", "header:", "joint_states:", "- header:", "- joint_states:", "observations:"];
+const BEGINNINGS: [&str; 6] = ["---", "header:", "joint_states:", "- header:", "- joint_states:", "observations:"];
 /// Key of joints in a file of YAML or JSON.
 const JOINTS: &str = "joint_states";
 
@@ -24,8 +23,7 @@ pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
         return Ok(true);
     }
     if has_keys {
-        let has =
-            |key: &str| head.lines().any(|line| line.trim_start().trim_start_matches("- ").starts_with(key));
+        let has = |key: &str| head.lines().any(|line| line.trim_start().trim_start_matches("- ").starts_with(key));
         let message = if has("target_finder:") || has("image:") && has("pose:") {
             "found pictures with poses (cal_data.yaml of industrial_calibration), expected the joint readings of each picture, which it does not have: \
              write a CSV with `image` and the joints, and the corners by `poecal detect`; the file itself is for --camera, --markers and \
@@ -51,13 +49,11 @@ fn begins_with_keys(head: &str) -> bool {
         let key = line.split_once(':').filter(|it| it.1.is_empty() || it.1.starts_with(' ')).map(|it| it.0);
         key.is_some_and(|key| !key.is_empty() && key.chars().all(is_word))
     };
-    let is_entry =
-        |line: &str| line == "-" || line.starts_with("- ") || line.starts_with(['[', ']', '{', '}']);
+    let is_entry = |line: &str| line == "-" || line.starts_with("- ") || line.starts_with(['[', ']', '{', '}']);
     let is_inside = |line: &str| {
         let inner = line.trim_start();
         is_entry(inner) || inner.len() < line.len() && (is_key(inner) || inner.ends_with([']', '}']))
     };
     let mut lines = head.lines().filter(is_content).take(LOOKED_AT).peekable();
-    lines.peek().is_some_and(|it| is_key(it.trim_start_matches("- ")))
-        && lines.all(|it| is_key(it) || is_inside(it))
+    lines.peek().is_some_and(|it| is_key(it.trim_start_matches("- "))) && lines.all(|it| is_key(it) || is_inside(it))
 }

@@ -10,9 +10,7 @@ use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::row::{component_noise, measurement};
 use crate::table::targets::TargetLayout;
 use crate::table::{FileRow, beam_breaks};
-use poecal_model::measurement::{
-    Measurement, NoiseShape, Observation, Quantity, RowLocation, Set, StatedDeviations,
-};
+use poecal_model::measurement::{Measurement, NoiseShape, Observation, Quantity, RowLocation, Set, StatedDeviations};
 use poecal_model::robot::check_name;
 use poecal_numerics::error::Result;
 
@@ -28,10 +26,10 @@ impl MeasurementReader<'_> {
                 let mut stated = StatedDeviations::default();
                 stated.set(Quantity::Position, inputs.sigma(row, target.sigma_position)?);
                 stated.set(Quantity::Rotation, inputs.sigma(row, target.sigma_rotation)?);
-                let shape =
-                    component_noise(row, target, inputs, &measurement)?.and_then(NoiseShape::by_component);
+                let shape = component_noise(row, target, inputs, &measurement)?.and_then(NoiseShape::by_component);
                 if let (Some(_), Some(input)) = (&shape, target.sigma_position) {
-                    let message = "found `sigma_position` beside standard deviations of the components, expected one of the two";
+                    let message =
+                        "found `sigma_position` beside standard deviations of the components, expected one of the two";
                     return Err(row.error(inputs.column(input), message));
                 }
                 self.observation(row, (target, set, None), (measurement, stated), inputs)?;
@@ -61,8 +59,7 @@ impl MeasurementReader<'_> {
             return Ok(false);
         }
         if let Some((_, line)) = self.begun.get(name.as_ref()) {
-            let message =
-                format!("found a third row of the pair `{name}` (line {line} is the first), expected two");
+            let message = format!("found a third row of the pair `{name}` (line {line} is the first), expected two");
             return Err(row.error(column, message));
         }
         let further = self.found.data.push_further(inputs.readings());
@@ -218,8 +215,6 @@ pub(crate) fn set_of(row: &FileRow<'_>, index: usize) -> Result<Option<Set>> {
         "" => Ok(None),
         "fit" => Ok(Some(Set::Fit)),
         "held_out" => Ok(Some(Set::HeldOut)),
-        other => {
-            Err(row.error(index, format!("found `{other}` in column `set`, expected `fit` or `held_out`")))
-        }
+        other => Err(row.error(index, format!("found `{other}` in column `set`, expected `fit` or `held_out`"))),
     }
 }

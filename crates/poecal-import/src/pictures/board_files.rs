@@ -79,8 +79,7 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
     let Some(ending) = ending.filter(|it| ENDINGS.contains(&it.as_str())) else { return Ok(None) };
     let text = read_up_to(path, EXPECTED, ResourceLimit::Settings)?;
-    let leaves =
-        if ending == "xml" { of_xml(&text, path, EXPECTED)? } else { leaves(&text, path, EXPECTED)? };
+    let leaves = if ending == "xml" { of_xml(&text, path, EXPECTED)? } else { leaves(&text, path, EXPECTED)? };
     let stated = KeyedValues { leaves, path };
     let Some(maker) = MAKERS.iter().find(|it| stated.find(it.mark).is_some()) else {
         return Err(ErrorKind::Option.error(format!("found no board, expected {EXPECTED}")).in_file(path));
@@ -144,8 +143,7 @@ impl KeyedValues<'_> {
 
     /// The keys of the board that were not read.
     fn describe_unread_keys(&self, maker: &BoardSoftware) -> Result<Option<String>> {
-        let is_below =
-            |leaf: &YamlLeaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == maker.section);
+        let is_below = |leaf: &YamlLeaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == maker.section);
         let at = usize::from(self.leaves.iter().any(is_below));
         self.describe_other_keys(KeyOwner::Board, (at, |leaf| at == 0 || is_below(leaf)), &[maker.known])
     }

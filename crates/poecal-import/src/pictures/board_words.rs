@@ -14,10 +14,7 @@ const SQUARES: &str =
 const KINDS: [(&str, &str); 5] = [
     ("chessboard", SQUARES),
     ("charuco", SQUARES),
-    (
-        "circles",
-        "dots along x and y and the pitch of the rows, as circles:9x6:30mm or circles:4x11:20mm:asymmetric",
-    ),
+    ("circles", "dots along x and y and the pitch of the rows, as circles:9x6:30mm or circles:4x11:20mm:asymmetric"),
     (
         "aprilgrid",
         "tags along x and y, their side, and what is between them as a part of it, as aprilgrid:6x6:88mm:0.3",
@@ -58,9 +55,7 @@ fn board(kind: &str, parts: &[&str]) -> Result<Option<Board>> {
         // The family of tags does not either.
         ("aprilgrid", [tags, side, spacing] | [tags, side, spacing, _]) => {
             match (sized(tags, side)?, spacing.trim().parse()) {
-                (Some((tags, side_m)), Ok(spacing)) => {
-                    Board::april_grid(BOARD, tags, side_m, spacing).map(Some)
-                }
+                (Some((tags, side_m)), Ok(spacing)) => Board::april_grid(BOARD, tags, side_m, spacing).map(Some),
                 _ => Ok(None),
             }
         }

@@ -92,8 +92,7 @@ impl CameraColumns {
             *value = number(column, own)?.unwrap_or(0.0);
         }
         let size = [number(&self.size[0], "size")?, number(&self.size[1], "size")?];
-        let size_px =
-            size_of_pictures(size).map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?;
+        let size_px = size_of_pictures(size).map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?;
         let is_fisheye = ["fisheye", "equidistant"].contains(&row.word(self.model).to_lowercase().as_str());
         // A single camera needs no name.
         let name = self.name.map_or_else(|| "camera".to_owned(), |at| row.word(Some(at)));

@@ -50,9 +50,7 @@ pub(crate) fn read_trees(mut documents: Vec<Vec<YamlLeaf>>, path: &Path) -> Resu
         if other?.0 != cameras {
             return refuse(
                 path,
-                format!(
-                    "found another camera in document {at} than in the first, expected one: take the others out"
-                ),
+                format!("found another camera in document {at} than in the first, expected one: take the others out"),
             );
         }
     }
@@ -88,11 +86,7 @@ fn read_tree(stated: &KeyedValues<'_>) -> Result<ReadCameras> {
         let known = [MATRIX, COEFFICIENTS, MODEL, MODEL_OF_ANY, IS_FISHEYE, SIZE[0], SIZE[1], BESIDE];
         let known: Vec<&str> = known.into_iter().chain(FOCAL).chain(NAMED).collect();
         refuse_changes_above(stated, place)?;
-        said.extend(seen.into_iter().chain(others(
-            place.len(),
-            &|leaf| leaf.path.starts_with(place),
-            &known,
-        )?));
+        said.extend(seen.into_iter().chain(others(place.len(), &|leaf| leaf.path.starts_with(place), &known)?));
     }
     Ok((cameras, said))
 }
@@ -102,12 +96,11 @@ fn refuse_changes_above(stated: &KeyedValues<'_>, place: &[String]) -> Result<()
     for depth in 0..place.len() {
         let beside = |leaf: &YamlLeaf| {
             let path = leaf.path.get(..=depth)?;
-            let is_beside = path.iter().zip(place).take(depth).all(|(key, own)| key == own)
-                && path.last() != place.get(depth);
+            let is_beside =
+                path.iter().zip(place).take(depth).all(|(key, own)| key == own) && path.last() != place.get(depth);
             is_beside.then(|| YamlLeaf { path: path.to_vec(), ..leaf.clone() })
         };
-        let above =
-            KeyedValues { leaves: stated.leaves.iter().filter_map(beside).collect(), path: stated.path };
+        let above = KeyedValues { leaves: stated.leaves.iter().filter_map(beside).collect(), path: stated.path };
         above.describe_other_keys(KeyOwner::Pictures, (depth, |_: &YamlLeaf| true), &["depth*", BESIDE])?;
     }
     Ok(())
@@ -141,10 +134,8 @@ fn read_chain(stated: &KeyedValues<'_>) -> Result<Vec<Camera>> {
     let is_lens = |leaf: &&YamlLeaf| {
         matches!(leaf.path.as_slice(), [_, key, _] if key == "intrinsics") && are_places(&leaf.path[2..])
     };
-    let has_model =
-        |name: &&String| stated.keys_below(std::slice::from_ref(*name)).word("camera_model").is_some();
-    let mut names: Vec<&String> =
-        stated.leaves.iter().filter(is_lens).filter_map(|leaf| leaf.path.first()).collect();
+    let has_model = |name: &&String| stated.keys_below(std::slice::from_ref(*name)).word("camera_model").is_some();
+    let mut names: Vec<&String> = stated.leaves.iter().filter(is_lens).filter_map(|leaf| leaf.path.first()).collect();
     names.dedup();
     names.retain(has_model);
     let camera = |name: &String| {
@@ -152,10 +143,7 @@ fn read_chain(stated: &KeyedValues<'_>) -> Result<Vec<Camera>> {
         let model = own.word("camera_model").unwrap_or_default();
         if model != "pinhole" {
             let expected = format!("`pinhole`: calibrate it so, {OTHERWISE}");
-            return refuse(
-                path,
-                format!("found the camera model `{model}` of `{name}`, expected {expected}"),
-            );
+            return refuse(path, format!("found the camera model `{model}` of `{name}`, expected {expected}"));
         }
         let [fx, fy, cx, cy] = exact_numbers(own.list("intrinsics")?, "intrinsics", path)?;
         let kind = own.word("distortion_model").unwrap_or("none");
@@ -195,11 +183,7 @@ fn refuse_far_distortion(all: &KeyedValues<'_>, places: &[&[String]]) -> Result<
 }
 
 /// The camera below these keys, and the effect of its region in words.
-fn read_single(
-    all: &KeyedValues<'_>,
-    place: &[String],
-    places: &[&[String]],
-) -> Result<(Camera, Option<String>)> {
+fn read_single(all: &KeyedValues<'_>, place: &[String], places: &[&[String]]) -> Result<(Camera, Option<String>)> {
     let path = all.path;
     let in_file = |error: Error| error.in_file(path);
     let refused = |found: String| ErrorKind::Measurement.error(found).in_file(path);

@@ -39,9 +39,8 @@ fn unknown(size: &str, typed: &str) -> Result<Camera> {
     let number = |text: &str| text.trim().parse::<u32>().ok().filter(|it| (1..=LARGEST_SIDE).contains(it));
     let found = size.split_once(['x', 'X']).and_then(|(x, y)| Some([number(x)?, number(y)?]));
     let Some(size_px) = found else {
-        return ErrorKind::Option.refuse(format!(
-            "found the camera `{typed}`, expected the size of its pictures, as unknown:1920x1080"
-        ));
+        return ErrorKind::Option
+            .refuse(format!("found the camera `{typed}`, expected the size of its pictures, as unknown:1920x1080"));
     };
     // Any lens will do until the pictures determine it.
     let [width, height] = size_px.map(f64::from);
@@ -141,8 +140,7 @@ fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize
         let (found, expected) = (text(other, "type"), VISP_MODELS.join(" or "));
         return Err((other.range().start, format!("found the model `{found}`, expected {expected}")));
     };
-    let [Some(px), Some(py), Some(u0), Some(v0)] = ["px", "py", "u0", "v0"].map(|name| number(model, name))
-    else {
+    let [Some(px), Some(py), Some(u0), Some(v0)] = ["px", "py", "u0", "v0"].map(|name| number(model, name)) else {
         let message = format!("found a `<model>` without px, py, u0 and v0, expected {EXPECTED}");
         return Err((model.range().start, message));
     };

@@ -45,8 +45,7 @@ fn column(
     for name in names {
         let is_it = |key: &String| key == name || key.strip_suffix("px") == Some(name);
         let cells = header.cells.iter().zip(&keys).enumerate();
-        let mut found =
-            cells.filter(|(_, (cell, key))| is_it(key) && !joints.contains(&cell.name)).map(|(at, _)| at);
+        let mut found = cells.filter(|(_, (cell, key))| is_it(key) && !joints.contains(&cell.name)).map(|(at, _)| at);
         let Some(first) = found.next() else { continue };
         let Some(second) = found.next() else { return Ok(Some(first)) };
         let message = format!(
@@ -101,8 +100,8 @@ pub(crate) fn are_corners(header: &Header<'_>, joints: &[String], map: &ColumnMa
 /// True if a file has joint readings by picture, and no measurements.
 pub(crate) fn are_readings_of_pictures(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> bool {
     let without = |names: &[&str]| names.iter().all(|name| header.count(name) == 0);
-    let has_picture = header.count("image") > 0
-        || !is_measured(header, map) && picture(header, joints).is_ok_and(|it| it.is_some());
+    let has_picture =
+        header.count("image") > 0 || !is_measured(header, map) && picture(header, joints).is_ok_and(|it| it.is_some());
     has_picture
         && without(&["u", "v", "x", "y", "z"])
         && are_corners(header, joints, map).is_ok_and(|are_corners| !are_corners)
@@ -208,20 +207,14 @@ impl CornerColumns {
 
     /// The meaning of columns whose name is not ours, in words; `None` if all are ours.
     pub(crate) fn words(&self, header: &Header<'_>) -> Option<String> {
-        let is_foreign =
-            |(name, at): &(&str, usize)| header.cells.get(*at).is_some_and(|cell| cell.name != *name);
+        let is_foreign = |(name, at): &(&str, usize)| header.cells.get(*at).is_some_and(|cell| cell.name != *name);
         let foreign = self.all().into_iter().filter(is_foreign);
-        let words: Vec<String> =
-            foreign.map(|(name, at)| format!("`{}` for {name}", header.text(at))).collect();
+        let words: Vec<String> = foreign.map(|(name, at)| format!("`{}` for {name}", header.text(at))).collect();
         (!words.is_empty()).then(|| format!("took {}", words.join(", ")))
     }
 
     /// Interpretation of the columns, for `poecal check`; `seen` are smallest and largest u, v and standard deviation.
-    pub(crate) fn describe_columns(
-        &self,
-        header: &Header<'_>,
-        seen: &[ValueRange; 3],
-    ) -> Vec<ColumnUnderstanding> {
+    pub(crate) fn describe_columns(&self, header: &Header<'_>, seen: &[ValueRange; 3]) -> Vec<ColumnUnderstanding> {
         let of = |(name, at): (&'static str, usize)| {
             let pixel = ["u", "v", "sigma"].into_iter().zip(seen).find(|it| it.0 == name).map(|it| it.1);
             let place = self.place.iter().flatten().find(|(own, _)| *own == at);

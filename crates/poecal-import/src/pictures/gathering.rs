@@ -38,8 +38,7 @@ impl PictureGathering {
         let PictureGathering { pictures, numbers, named, .. } = self;
         let own: Vec<BTreeMap<u32, u32>> = boards.iter().map(Board::point_numbers).collect();
         let point = |board: usize, number: u32| own.get(board)?.get(&number).copied();
-        let all =
-            || numbers.iter().flat_map(|(at, all)| all.iter().map(|(number, place)| (*at, *number, *place)));
+        let all = || numbers.iter().flat_map(|(at, all)| all.iter().map(|(number, place)| (*at, *number, *place)));
         let beyond = all().find(|(at, number, _)| point(*at, *number).is_none());
         let from = u32::from(beyond.is_some());
         let of = |board: usize, number: u32| point(board, number.checked_sub(from)?);
@@ -66,29 +65,20 @@ impl PictureGathering {
         let first = own.get(at).and_then(|own| own.keys().next());
         let counted = match first {
             _ if from == 1 => "as counted from 1",
-            Some(first) if *first < number => {
-                "as the board counts them (if they count from 1, write them as names)"
-            }
+            Some(first) if *first < number => "as the board counts them (if they count from 1, write them as names)",
             _ => "as the board counts them",
         };
-        Ok(Some(format!(
-            "took the numbers of corners for the points of the board, {counted}: `{number}` is `{name}`"
-        )))
+        Ok(Some(format!("took the numbers of corners for the points of the board, {counted}: `{number}` is `{name}`")))
     }
 
     /// Assigns joint readings of another file, which has `what` by picture, to the pictures. Names are equal, or have equal numbers at their end
     /// that no other picture has. Returns sentences on the pictures that were left out.
-    pub(crate) fn join(
-        &mut self,
-        path: &Path,
-        (others, what): (&ConfigurationsByImage, &str),
-    ) -> Result<Vec<String>> {
+    pub(crate) fn join(&mut self, path: &Path, (others, what): (&ConfigurationsByImage, &str)) -> Result<Vec<String>> {
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
         let partners = PicturePartners::new(&seen, others.keys().collect());
         let alike = partners.words("pictures", seen.len());
         let mut words: Vec<String> = alike.map(|it| format!("{it} of the {what}")).into_iter().collect();
-        let unknown: Vec<&String> =
-            seen.iter().copied().filter(|name| partners.partner(name).is_none()).collect();
+        let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.partner(name).is_none()).collect();
         let used: BTreeSet<&String> = seen.iter().copied().chain(partners.alike.values().copied()).collect();
         let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();
         if unknown.len() == seen.len()
@@ -100,8 +90,7 @@ impl PictureGathering {
             );
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
-        for (names, which) in
-            [(unknown, format!("corners and no {what}")), (without, format!("{what} and no corners"))]
+        for (names, which) in [(unknown, format!("corners and no {what}")), (without, format!("{what} and no corners"))]
         {
             if !names.is_empty() {
                 let few = first_few(&names);

@@ -51,22 +51,11 @@ pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>
         ));
     }
     let [second, third] = [bent * bent, bent * bent * bent];
-    let distortion = Distortion::Brown([
-        -5.0 * bent,
-        6.0 * second,
-        0.0,
-        0.0,
-        -third,
-        -6.0 * bent,
-        10.0 * second,
-        -4.0 * third,
-    ]);
+    let distortion =
+        Distortion::Brown([-5.0 * bent, 6.0 * second, 0.0, 0.0, -third, -6.0 * bent, 10.0 * second, -4.0 * third]);
     let lens = Lens { focal_px, centre_px: [cx, cy], distortion, size_px };
-    let said = if bent == 0.0 {
-        Vec::new()
-    } else {
-        vec!["HALCON's division model as OpenCV's rational one".to_owned()]
-    };
+    let said =
+        if bent == 0.0 { Vec::new() } else { vec!["HALCON's division model as OpenCV's rational one".to_owned()] };
     Ok(Some((vec![Camera::new(String::new(), lens)], said)))
 }
 

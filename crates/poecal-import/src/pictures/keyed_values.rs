@@ -32,9 +32,7 @@ pub(crate) fn of_xml(text: &str, path: &Path, expected: &str) -> Result<Vec<Yaml
         let leaf = |path, text: &str| YamlLeaf { path, text: text.to_owned(), line };
         let words: Vec<&str> = own.split_whitespace().collect();
         if words.len() > 1 && words.iter().all(|it| it.parse::<f64>().is_ok()) {
-            let word = |(at, word): (usize, &&str)| {
-                leaf(keys.iter().cloned().chain([at.to_string()]).collect(), word)
-            };
+            let word = |(at, word): (usize, &&str)| leaf(keys.iter().cloned().chain([at.to_string()]).collect(), word);
             found.extend(words.iter().enumerate().map(word));
         } else {
             found.push(leaf(keys, own.trim().trim_matches('"').trim()));
@@ -61,8 +59,7 @@ impl KeyedValues<'_> {
 
     /// The word at the first of these keys that the file has; blanks separate the keys.
     pub(crate) fn word(&self, keys: &str) -> Option<&str> {
-        let own =
-            |leaf: &&YamlLeaf| matches!(leaf.path.as_slice(), [key] if keys.split(' ').any(|it| it == key));
+        let own = |leaf: &&YamlLeaf| matches!(leaf.path.as_slice(), [key] if keys.split(' ').any(|it| it == key));
         self.leaves.iter().find(own).map(|leaf| leaf.text.as_str())
     }
 
@@ -115,8 +112,7 @@ impl KeyedValues<'_> {
         known: &[&str],
     ) -> Result<Option<String>> {
         let own: Vec<YamlLeaf> = self.leaves.iter().filter(|leaf| own(leaf)).cloned().collect();
-        let known =
-            || known.iter().flat_map(|keys| keys.split(' ')).filter_map(|keys| keys.split('.').next());
+        let known = || known.iter().flat_map(|keys| keys.split(' ')).filter_map(|keys| keys.split('.').next());
         let is_it = |known: &str, key: &str| match known.strip_suffix('*') {
             Some(start) => key.starts_with(start) && !key.contains("flip"),
             None => known.eq_ignore_ascii_case(key),

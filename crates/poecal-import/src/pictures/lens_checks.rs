@@ -51,8 +51,7 @@ pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
 /// A distortion by the name of its model and its coefficients.
 pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Distortion> {
     let refuse = |expected: &str| {
-        let message =
-            format!("found the distortion `{kind}` with {} coefficients, expected {expected}", numbers.len());
+        let message = format!("found the distortion `{kind}` with {} coefficients, expected {expected}", numbers.len());
         Err(ErrorKind::Measurement.error(message).in_file(path))
     };
     let small = kind.to_ascii_lowercase();

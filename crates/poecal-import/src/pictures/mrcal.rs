@@ -28,18 +28,14 @@ pub(super) fn of_mrcal(stated: &KeyedValues<'_>) -> Result<Option<Camera>> {
     };
     let mut numbers = stated.list("intrinsics")?;
     if numbers.len() != 4 + count {
-        let message =
-            format!("found {} numbers of `intrinsics`, expected {} of {model}", numbers.len(), 4 + count);
+        let message = format!("found {} numbers of `intrinsics`, expected {} of {model}", numbers.len(), 4 + count);
         return refuse(stated.path, message);
     }
     let bent = numbers.split_off(numbers.len().min(4));
     let [fx, fy, cx, cy] = exact_numbers(numbers, "intrinsics", stated.path)?;
     let size_px = listed_size(stated, "imagersize")?;
     let distortion = distortion("opencv", &bent, stated.path)?;
-    Ok(Some(Camera::new(
-        String::new(),
-        Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px },
-    )))
+    Ok(Some(Camera::new(String::new(), Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px })))
 }
 
 /// The text of a camera of mrcal without the inputs of its optimisation, which are Python bytes and no YAML.

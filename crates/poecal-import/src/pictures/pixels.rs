@@ -34,8 +34,7 @@ impl MeasurementReader<'_> {
             let taken = self.take_configuration(row, &mut inputs)?;
             let name = row.word(Some(image));
             if name.is_empty() {
-                let message =
-                    format!("found an empty cell in column `{column}`, expected the name of a picture");
+                let message = format!("found an empty cell in column `{column}`, expected the name of a picture");
                 return Err(row.error(image, message));
             }
             if let Some(PictureConfiguration { place: (path, line), .. }) = self.taken.get(&name) {
@@ -75,8 +74,7 @@ impl MeasurementReader<'_> {
                 (true, _) => Some(self.take_configuration(row, &mut inputs)?),
                 (false, Some(_)) => None,
                 (false, None) => {
-                    let message =
-                        "found an empty cell in the column of the picture, expected the name of a picture";
+                    let message = "found an empty cell in the column of the picture, expected the name of a picture";
                     return Err(row.error(columns.image.unwrap_or(0), message));
                 }
             };
@@ -119,8 +117,7 @@ impl MeasurementReader<'_> {
             header.require("image", "for the name of the picture", |_| false, "")?;
         }
         // A column that counts corners is no id of their picture.
-        if let Some(id) =
-            layout.id.filter(|id| columns.place.is_some() || columns.all().iter().any(|(_, at)| at == id))
+        if let Some(id) = layout.id.filter(|id| columns.place.is_some() || columns.all().iter().any(|(_, at)| at == id))
         {
             layout.ignored.extend(header.cells.get(id).map(|cell| (cell.text.clone(), None)));
             layout.id = None;
@@ -142,11 +139,7 @@ impl MeasurementReader<'_> {
     }
 
     /// The configuration of a row.
-    fn take_configuration(
-        &mut self,
-        row: &FileRow<'_>,
-        inputs: &mut Cursor<'_>,
-    ) -> Result<PictureConfiguration> {
+    fn take_configuration(&mut self, row: &FileRow<'_>, inputs: &mut Cursor<'_>) -> Result<PictureConfiguration> {
         Ok(PictureConfiguration {
             readings: inputs.read_joints(row)?.to_vec(),
             set: self.set(row, &inputs.layout)?,

@@ -19,10 +19,8 @@ impl MeasurementReader<'_> {
         let (mut left_out, mut found) = (Vec::new(), 0);
         self.found.data.pictures.cameras.clone_from(&self.cameras);
         self.found.data.pictures.boards.clone_from(&self.boards);
-        let pictures: Vec<(usize, &[Corner])> =
-            gathered.iter().map(|it| (it.camera, it.corners.as_slice())).collect();
-        let said =
-            check_sizes(&self.cameras, &pictures).map_err(|it| it.error(ErrorKind::Measurement, path))?;
+        let pictures: Vec<(usize, &[Corner])> = gathered.iter().map(|it| (it.camera, it.corners.as_slice())).collect();
+        let said = check_sizes(&self.cameras, &pictures).map_err(|it| it.error(ErrorKind::Measurement, path))?;
         self.warn(path, said);
         self.guess_lenses(&gathered)?;
         for one in gathered {
@@ -33,8 +31,7 @@ impl MeasurementReader<'_> {
             let picture = Picture::new(one.camera, one.board, one.image, one.corners);
             let data = &mut self.found.data;
             let pushed = data.push_picture(&taken.readings, picture, (taken.set, RowLocation { file, line }));
-            let refused =
-                |error: Error| ErrorKind::Measurement.error(error.message()).at_line(path, line as usize);
+            let refused = |error: Error| ErrorKind::Measurement.error(error.message()).at_line(path, line as usize);
             if let Err(reason) = pushed.map_err(refused)? {
                 left_out.push(format!("{name} ({reason})"));
                 continue;
@@ -50,8 +47,7 @@ impl MeasurementReader<'_> {
             self.warn(path, [format!("left out {out} of {} pictures: {few}", out + found)]);
         }
         if found == 0 {
-            let message =
-                "found no picture with a pose, expected at least four corners of a board in a picture";
+            let message = "found no picture with a pose, expected at least four corners of a board in a picture";
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
         Ok(())
@@ -63,15 +59,12 @@ impl MeasurementReader<'_> {
         for (at, camera) in pictures.cameras.iter_mut().enumerate().filter(|(_, it)| it.is_guessed) {
             let view = |one: &BoardSighting| -> Option<FlatView> {
                 let board = pictures.boards.get(one.board).filter(|board| is_flat_sheet(board))?;
-                let of =
-                    |corner: &Corner| Some((board.points.get(corner.point as usize)?.xy(), corner.pixel));
+                let of = |corner: &Corner| Some((board.points.get(corner.point as usize)?.xy(), corner.pixel));
                 Some(one.corners.iter().filter_map(of).unzip())
             };
-            let views: Vec<FlatView> =
-                gathered.iter().filter(|one| one.camera == at).filter_map(view).collect();
+            let views: Vec<FlatView> = gathered.iter().filter(|one| one.camera == at).filter_map(view).collect();
             let size_px = camera.lens.size_px.unwrap_or([1, 1]);
-            camera.lens =
-                guessed_lens(size_px, &views).map_err(|found| ErrorKind::Measurement.error(found))?;
+            camera.lens = guessed_lens(size_px, &views).map_err(|found| ErrorKind::Measurement.error(found))?;
         }
         Ok(())
     }

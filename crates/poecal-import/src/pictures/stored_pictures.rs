@@ -28,9 +28,8 @@ fn refuse(path: &Path, message: String) -> Error {
 /// The pictures of a `calibration.json`.
 fn read_stored_pictures(path: &Path) -> Result<StoredPictures> {
     let text = text_of(path, "a calibration.json with pictures")?;
-    let stored: StoredPictureFile = serde_json::from_str(&text).map_err(|error| {
-        refuse(path, format!("found no calibration.json ({error}), expected one with pictures"))
-    })?;
+    let stored: StoredPictureFile = serde_json::from_str(&text)
+        .map_err(|error| refuse(path, format!("found no calibration.json ({error}), expected one with pictures")))?;
     let expected = "found a calibration without pictures, expected one of a session with a camera";
     stored.pictures.ok_or_else(|| refuse(path, expected.to_owned()))
 }

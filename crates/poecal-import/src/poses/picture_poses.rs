@@ -33,8 +33,8 @@ pub(crate) struct PicturePoses {
 /// True if a file has corners in pixels. A file that cannot be read has none here, and is refused later by its expected form.
 pub(crate) fn are_corners_of(path: &Path) -> bool {
     let map = ColumnMap::default();
-    let table = LineBlocks::open(path, "a file of corners (CSV)")
-        .and_then(|blocks| FileTable::open(path, blocks, &map));
+    let table =
+        LineBlocks::open(path, "a file of corners (CSV)").and_then(|blocks| FileTable::open(path, blocks, &map));
     table.is_ok_and(|table| are_corners(&table.header, &[], &map).unwrap_or(false))
 }
 
@@ -69,16 +69,12 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;
     let pictures = &found.data.pictures;
     refuse_several(pictures).map_err(|error| error.in_file(path))?;
-    let poses =
-        PoseList::of_pictures(pictures).map_err(|found| ErrorKind::Measurement.error(found).in_file(path))?;
-    let row =
-        |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
+    let poses = PoseList::of_pictures(pictures).map_err(|found| ErrorKind::Measurement.error(found).in_file(path))?;
+    let row = |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
     let rows: Vec<usize> = pictures.all.iter().map(|it| row(it) as usize).collect();
     let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
-    let words = format!(
-        "the target: its pose by its corners in each picture ({corners} corners in {} pictures)",
-        rows.len()
-    );
+    let words =
+        format!("the target: its pose by its corners in each picture ({corners} corners in {} pictures)", rows.len());
     Ok(PicturePoses { rows, poses, words, warnings: found.warnings, sha256: found.sha256 })
 }
 

@@ -65,8 +65,7 @@ fn key_of(name: &str) -> Option<String> {
     if name.len() == 3 && digits.len() == 2 && digits.bytes().all(|it| it.is_ascii_digit()) {
         return Some(format!("r{digits}"));
     }
-    let of_place =
-        ColumnRole::Place.words().filter_map(|it| name.strip_prefix(it)).find(|it| PLACE.contains(it));
+    let of_place = ColumnRole::Place.words().filter_map(|it| name.strip_prefix(it)).find(|it| PLACE.contains(it));
     let known = of_place.unwrap_or(name);
     let is_known = PLACE.contains(&known) || CONVENTIONS.iter().any(|it| it.has(known));
     is_known.then(|| known.to_owned())
@@ -98,8 +97,7 @@ fn part_of(name: &str) -> Option<(Option<PoseOwner>, String)> {
 
 /// The column that names the rows.
 pub(crate) fn name_column(header: &Header<'_>) -> Option<usize> {
-    let mut names =
-        [ColumnRole::Picture, ColumnRole::Row, ColumnRole::Frame].into_iter().flat_map(ColumnRole::words);
+    let mut names = [ColumnRole::Picture, ColumnRole::Row, ColumnRole::Frame].into_iter().flat_map(ColumnRole::words);
     names.find_map(|name| header.cells.iter().position(|cell| plain_letters(&cell.name) == name))
 }
 
@@ -126,9 +124,8 @@ impl std::str::FromStr for PoseUnits {
             let unit = NamedUnit::parse_any(symbol)?;
             let place = if unit.si_unit() == Unit::Radian { &mut units.angle } else { &mut units.length };
             if place.replace(unit).is_some() {
-                return ErrorKind::Option.refuse(format!(
-                    "found `{text}`, expected one unit of lengths and one of angles, like mm,deg"
-                ));
+                return ErrorKind::Option
+                    .refuse(format!("found `{text}`, expected one unit of lengths and one of angles, like mm,deg"));
             }
         }
         Ok(units)
@@ -150,19 +147,14 @@ pub(crate) fn find_pose_columns(
     let mut parts: Vec<PosePartColumn> = cells
         .filter_map(|(at, cell)| part_of(&cell.name).map(|(whose, key)| PosePartColumn { at, whose, key }))
         .collect();
-    parts.extend(matrices.iter().map(|(at, whose, key)| PosePartColumn {
-        at: *at,
-        whose: *whose,
-        key: key.clone(),
-    }));
+    parts.extend(matrices.iter().map(|(at, whose, key)| PosePartColumn { at: *at, whose: *whose, key: key.clone() }));
     let has = |whose| parts.iter().any(|it| it.whose == Some(whose));
     let is_one = !(has(PoseOwner::Arm) && has(PoseOwner::Target));
     if let Some(whose) = alone.filter(|_| is_one) {
         parts.iter_mut().for_each(|it| it.whose = Some(whose));
     }
     // The elements of a matrix may be numbered from 0.
-    let from_0: Vec<Option<PoseOwner>> =
-        parts.iter().filter(|it| it.key == "r00").map(|it| it.whose).collect();
+    let from_0: Vec<Option<PoseOwner>> = parts.iter().filter(|it| it.key == "r00").map(|it| it.whose).collect();
     for part in parts.iter_mut().filter(|it| from_0.contains(&it.whose)) {
         if let Some(Ok(number)) = part.key.strip_prefix('r').map(str::parse::<u32>) {
             part.key = format!("r{}", number + 11);
@@ -189,9 +181,8 @@ fn settle(parts: &mut [PosePartColumn]) {
         if !columns.iter().all(|name| parts.iter().any(|it| is(it, None, name))) {
             continue;
         }
-        let is_alike = |it: &PosePartColumn| {
-            it.whose == Some(PoseOwner::Arm) && is_of_place(&it.key) == (columns == PLACE)
-        };
+        let is_alike =
+            |it: &PosePartColumn| it.whose == Some(PoseOwner::Arm) && is_of_place(&it.key) == (columns == PLACE);
         let is_arms = is_makers || !parts.iter().any(is_alike);
         for part in parts.iter_mut().filter(|it| columns.iter().any(|name| is(it, None, name))) {
             part.whose = Some(if is_arms { PoseOwner::Arm } else { PoseOwner::Target });
@@ -221,21 +212,15 @@ pub(crate) fn list_words(whose: PoseOwner) -> &'static str {
 }
 
 /// The columns of one list by their parts.
-fn columns(
-    header: &Header<'_>,
-    whose: PoseOwner,
-    parts: &[&PosePartColumn],
-    stated: PoseUnits,
-) -> Result<PoseColumns> {
+fn columns(header: &Header<'_>, whose: PoseOwner, parts: &[&PosePartColumn], stated: PoseUnits) -> Result<PoseColumns> {
     let find = |name: &&str| parts.iter().find(|it| it.key.eq_ignore_ascii_case(name)).map(|it| it.at);
     let all = |names: &[&str]| names.iter().map(find).collect::<Option<Vec<usize>>>();
     let who = list_words(whose);
     let refuse = |missing: &str, expected: &str, more: &str| {
         let names = parts.iter().filter_map(|it| header.cells.get(it.at)).map(|it| it.name.as_str());
         let names = names.collect::<Vec<_>>().join(", ");
-        let message = format!(
-            "found no {missing} of {who} among the columns {names}, expected {expected}: name them so{more}"
-        );
+        let message =
+            format!("found no {missing} of {who} among the columns {names}, expected {expected}: name them so{more}");
         Err(ErrorKind::Measurement.error(message).at_line(header.path, header.line))
     };
     let Some(place) = all(&PLACE).or_else(|| all(&IN_MATRIX)) else {
@@ -256,13 +241,12 @@ fn columns(
     let stated_angle = stated.angle.filter(|_| takes_angle_unit);
     let angle = if quantity == Unit::Radian { angle } else { "1" };
     // The unit of the header has priority, then the end of the column's name, the stated unit, and the usual one.
-    let number =
-        |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
-            let in_header = header.unit(at, quantity, &format!("for {who}"))?.map(|(unit, _)| unit);
-            let in_name = header.cells.get(at).and_then(|cell| without_unit(&cell.name).1);
-            let known = in_header.or(in_name.filter(|unit| unit.si_unit() == quantity)).or(stated);
-            Ok(NumberColumn { at, unit: known.map_or_else(|| NamedUnit::parse(usual, quantity), Ok)? })
-        };
+    let number = |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
+        let in_header = header.unit(at, quantity, &format!("for {who}"))?.map(|(unit, _)| unit);
+        let in_name = header.cells.get(at).and_then(|cell| without_unit(&cell.name).1);
+        let known = in_header.or(in_name.filter(|unit| unit.si_unit() == quantity)).or(stated);
+        Ok(NumberColumn { at, unit: known.map_or_else(|| NamedUnit::parse(usual, quantity), Ok)? })
+    };
     let of = |columns: Vec<usize>, quantity, stated, usual| {
         columns.into_iter().map(|at| number(at, quantity, stated, usual)).collect::<Result<Vec<_>>>()
     };

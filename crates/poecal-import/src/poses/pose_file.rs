@@ -87,8 +87,7 @@ impl PoseFile {
         let mut rows = BTreeMap::new();
         for (row, name) in names.iter().enumerate() {
             if rows.insert(name, row).is_some() {
-                let message =
-                    format!("found the name `{name}` a second time, expected each pose once: rename it");
+                let message = format!("found the name `{name}` a second time, expected each pose once: rename it");
                 let line = self.lines.get(row).copied().unwrap_or(1);
                 return Err(ErrorKind::Measurement.error(message).at_line(&self.path, line));
             }
@@ -148,8 +147,7 @@ pub(crate) fn read_poses(
     if let Some(robot) = by_joints {
         let read = read_joints(path, robot, &ReadOptions::default())?;
         let poses: Vec<Pose> = robot.forward_kinematics_of(&read.readings).collect();
-        let words =
-            format!("the arm: joint readings, by which `{}` is where the model has it", robot.tip_name);
+        let words = format!("the arm: joint readings, by which `{}` is where the model has it", robot.tip_name);
         file.lists.push(PoseFileList { whose: PoseOwner::Arm, poses: poses.into(), words });
         (file.joints, file.warnings) = (read.readings, read.warnings);
     }
@@ -167,8 +165,7 @@ impl PoseListRows {
     /// Adds the pose of a row.
     fn add(&mut self, row: &FileRow<'_>, numbers: &mut NumberReader) -> Result<()> {
         let PoseColumns { position, orientation, form, .. } = &self.columns;
-        let mut number =
-            |it: &NumberColumn| Ok(it.unit.to_si(row.number(it.at, numbers, format_args!(""))?));
+        let mut number = |it: &NumberColumn| Ok(it.unit.to_si(row.number(it.at, numbers, format_args!(""))?));
         let mut place = Vector3::zeros();
         for (value, column) in place.iter_mut().zip(position) {
             *value = number(column)?;

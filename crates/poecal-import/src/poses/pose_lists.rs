@@ -183,9 +183,7 @@ fn by_name(first: &PoseFile, second: &PoseFile, warnings: &mut Vec<String>) -> R
     let alone = one.len() + other.len() - 2 * rows.len();
     if alone > 0 {
         let both = rows.len();
-        warnings.push(format!(
-            "{alone} poses are in one of the two files only, and left out; {both} are in both"
-        ));
+        warnings.push(format!("{alone} poses are in one of the two files only, and left out; {both} are in both"));
     }
     Ok(rows)
 }

@@ -7,11 +7,7 @@ use poecal_arm::lie::angles::Angles;
 use poecal_fit::hand_eye::ListReading;
 
 /// Other interpretations of the orientations of a list.
-pub(crate) fn other_readings(
-    columns: &PoseColumns,
-    poses: &[Pose],
-    numbers: &[Vec<f64>],
-) -> Vec<ListReading> {
+pub(crate) fn other_readings(columns: &PoseColumns, poses: &[Pose], numbers: &[Vec<f64>]) -> Vec<ListReading> {
     let read = |form: OrientationForm, factor: f64| -> Option<Vec<Pose>> {
         let rows = numbers.iter().zip(poses);
         rows.map(|(numbers, pose)| {
@@ -20,8 +16,7 @@ pub(crate) fn other_readings(
         })
         .collect()
     };
-    let reading =
-        |(form, factor, advice): PoseReadingForm| Some(ListReading { advice, poses: read(form, factor)? });
+    let reading = |(form, factor, advice): PoseReadingForm| Some(ListReading { advice, poses: read(form, factor)? });
     ways(columns).into_iter().filter_map(reading).collect()
 }
 

@@ -77,8 +77,7 @@ pub(crate) fn table(path: &Path) -> Result<Option<MadeTable>> {
                 }
             } else {
                 let all = text.split(|it: char| it.is_whitespace() || matches!(it, ',' | ';' | '[' | ']'));
-                let numbers =
-                    all.filter(|it| !it.is_empty()).map(|it| it.parse().ok()).collect::<Option<Vec<f64>>>();
+                let numbers = all.filter(|it| !it.is_empty()).map(|it| it.parse().ok()).collect::<Option<Vec<f64>>>();
                 samples.found.extend(numbers.and_then(|it| PoseSample::matrix(it, whose_of(&name), 1)));
             }
             if samples.found.len() != before + 1 {
@@ -138,8 +137,7 @@ impl Samples {
         self.walk(node, whose);
         self.entries += 1;
         let own = self.found.get_mut(before..).filter(|own| own.len() <= 2).into_iter().flatten();
-        own.filter(|it| it.whose != whose && it.sample.is_none())
-            .for_each(|it| it.sample = Some(self.entries));
+        own.filter(|it| it.whose != whose && it.sample.is_none()).for_each(|it| it.sample = Some(self.entries));
     }
 }
 
@@ -149,10 +147,7 @@ impl PoseSample {
         let part = |keys: [&str; 2]| keys.into_iter().find_map(|key| node.get(key));
         let Some((place, turn)) = part(PLACES).zip(part(TURNS)) else {
             if let Some(matrix) = node.get("FloatMatrix").and_then(|it| it.get("Data")) {
-                return Some(PoseSample {
-                    in_mm: true,
-                    ..PoseSample::matrix(numbers(matrix)?, whose, node.line)?
-                });
+                return Some(PoseSample { in_mm: true, ..PoseSample::matrix(numbers(matrix)?, whose, node.line)? });
             }
             // The node has OpenCV's or ViSP's matrix, or the numbers alone.
             let numbers = numbers(node.get("data").unwrap_or(node))?;
@@ -176,19 +171,10 @@ impl PoseSample {
         let row = |at: usize| [all[at], all[at + 4], all[at + 8]];
         let numbers: Vec<f64> = match (&all[12..], row(3)) {
             ([0.0, 0.0, 0.0, _], _) => all[..12].to_vec(),
-            (_, [0.0, 0.0, 0.0]) => {
-                (0..3).flat_map(|at| [all[at], all[at + 4], all[at + 8], all[at + 12]]).collect()
-            }
+            (_, [0.0, 0.0, 0.0]) => (0..3).flat_map(|at| [all[at], all[at + 4], all[at + 8], all[at + 12]]).collect(),
             _ => return None,
         };
-        (all[15] == 1.0).then_some(PoseSample {
-            whose,
-            columns: &MATRIX,
-            numbers,
-            in_mm: false,
-            line,
-            sample: None,
-        })
+        (all[15] == 1.0).then_some(PoseSample { whose, columns: &MATRIX, numbers, in_mm: false, line, sample: None })
     }
 
     /// The names of its columns.
@@ -221,9 +207,10 @@ fn make_table(samples: &[PoseSample], are_files: bool) -> std::result::Result<Ma
     let is_alike = |row: &[&PoseSample]| {
         row.len() == first.len()
             && row.iter().zip(row.iter().skip(1)).all(|(one, next)| one.whose < next.whose)
-            && row.iter().zip(first).all(|(one, other)| {
-                (one.whose, one.columns, one.in_mm) == (other.whose, other.columns, other.in_mm)
-            })
+            && row
+                .iter()
+                .zip(first)
+                .all(|(one, other)| (one.whose, one.columns, one.in_mm) == (other.whose, other.columns, other.in_mm))
     };
     if first.len() > 2 || rows.values().any(|row| !is_alike(row)) {
         let [arm, target, others] = counts;
@@ -240,10 +227,6 @@ fn make_table(samples: &[PoseSample], are_files: bool) -> std::result::Result<Ma
         let line = row.first().map_or(1, |it| it.line);
         made.row(line, are_files.then_some(CellValue::Text(&name)).into_iter().chain(numbers));
     }
-    made.say(format!(
-        "{} poses, {}",
-        rows.len(),
-        if first.len() == 2 { "of arm and target" } else { "each alone" }
-    ));
+    made.say(format!("{} poses, {}", rows.len(), if first.len() == 2 { "of arm and target" } else { "each alone" }));
     Ok(made)
 }

@@ -18,8 +18,8 @@ use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::understanding::FileUnderstanding;
 use poecal_fit::start::{
-    FEWEST_PAIRS, JointStream, ResampledStream, TimeInterval, UnpairedRows, motion_of_points,
-    motion_of_target, stands_of_measured, stands_of_readings,
+    FEWEST_PAIRS, JointStream, ResampledStream, TimeInterval, UnpairedRows, motion_of_points, motion_of_target,
+    stands_of_measured, stands_of_readings,
 };
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -59,8 +59,7 @@ impl<'a> MeasurementReader<'a> {
     fn warn_of_unmeasured(&mut self, found: UnmeasuredReadings, joints: Option<&JointRows>) {
         let (Some(rows), Some(joints)) = (found.rows.filter(|it| !it.is_empty()), joints) else { return };
         let rows: Vec<usize> = rows.into_iter().collect();
-        let warning =
-            format!("{}: nothing was measured at {}", joints.path.display(), joints.lines_of(&rows));
+        let warning = format!("{}: nothing was measured at {}", joints.path.display(), joints.lines_of(&rows));
         self.found.warnings.insert(found.at.min(self.found.warnings.len()), warning);
     }
 
@@ -105,8 +104,7 @@ impl<'a> MeasurementReader<'a> {
             ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
             lines: table_rows.lines,
             is_sheet: table.is_sheet(),
-            is_without_unit: turning.clone().count() > 0
-                && turning.clone().all(|it| it.unit_from == UnitSource::Si),
+            is_without_unit: turning.clone().count() > 0 && turning.clone().all(|it| it.unit_from == UnitSource::Si),
             turns: layout.inputs.iter().map(|it| it.unit.si_unit() == Unit::Radian).collect(),
             times: table_rows.times,
             spans: None,
@@ -123,11 +121,8 @@ impl<'a> MeasurementReader<'a> {
         // A stream has no names of rows.
         let is_listed =
             !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
-        let found = if is_listed {
-            Err(None)
-        } else {
-            stands_of_readings(&rows.times, &rows.readings, rows.turns.len())
-        };
+        let found =
+            if is_listed { Err(None) } else { stands_of_readings(&rows.times, &rows.readings, rows.turns.len()) };
         let found = match found {
             Ok(found) => found,
             Err(why) => {
@@ -195,9 +190,8 @@ impl<'a> MeasurementReader<'a> {
         let stream = stands.as_ref().map(|_| (&data, times.as_slice()));
         let motion = stands.as_ref().and_then(|it| motion_of_target(&data, &times, &it.spans));
         let data = stands.as_ref().map_or(&data, |it| &it.data);
-        let points: Option<Vec<TimeInterval>> = (times.len() == data.len()
-            && times.iter().all(|it| it.is_finite()))
-        .then(|| points(data, &times));
+        let points: Option<Vec<TimeInterval>> =
+            (times.len() == data.len() && times.iter().all(|it| it.is_finite())).then(|| points(data, &times));
         let spans = stands.as_ref().map(|it| &it.spans).or(points.as_ref()).map(Vec::as_slice);
         let paired = |joints: &JointRows| {
             let (lag, no_stands) = (self.options.lag, why.as_ref());
@@ -223,11 +217,7 @@ impl<'a> MeasurementReader<'a> {
     }
 
     /// Joins measurements in motion; joint readings that state no unit may be degrees.
-    fn join_in_motion(
-        &mut self,
-        joints: &JointRows,
-        seen: (&Path, &Dataset, &[f64]),
-    ) -> Result<JoinedReadings> {
+    fn join_in_motion(&mut self, joints: &JointRows, seen: (&Path, &Dataset, &[f64])) -> Result<JoinedReadings> {
         let joined = |joints: &JointRows| in_motion(joints, seen, self.robot, self.options.lag);
         match joined(joints) {
             Err(error) if joints.is_without_unit => {
@@ -264,11 +254,8 @@ impl<'a> MeasurementReader<'a> {
     /// The measurements, with meaningless readings, and the time of each row, seconds; NaN if it has none.
     fn without_readings(&self, planned: &'a PlannedFile<'_>) -> Result<(Dataset, Vec<f64>)> {
         let map = &planned.map;
-        let mut reader = MeasurementReader {
-            map,
-            times: Some(Vec::new()),
-            ..MeasurementReader::new(self.robot, self.options, map)
-        };
+        let mut reader =
+            MeasurementReader { map, times: Some(Vec::new()), ..MeasurementReader::new(self.robot, self.options, map) };
         reader.rows_alone(planned.path, planned.blocks(self.opening_context(), MEASURED)?)?;
         Ok((reader.found.data, reader.times.unwrap_or_default()))
     }

@@ -63,8 +63,7 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
         rows_of(&mut table, &mut Cursor::new(layout, robot, map.decimal))
     };
     let joints = document::reading(|| {
-        let blocks =
-            OpeningContext { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
+        let blocks = OpeningContext { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
         rows(blocks).map_err(|error| in_its_file(error, path))
     })?;
     let warnings = joints.warnings.iter().map(|warning| escape_invisible(warning).into_owned()).collect();
@@ -75,12 +74,7 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
 ///
 /// # Errors
 /// Those of [`crate::read`] that concern joints.
-pub fn parse_joints(
-    text: &str,
-    path: impl AsRef<Path>,
-    robot: &Robot,
-    options: &ReadOptions,
-) -> Result<JointsTable> {
+pub fn parse_joints(text: &str, path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
     document::reading_text(path, text, || read_joints(path, robot, options))
 }

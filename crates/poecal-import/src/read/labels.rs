@@ -24,20 +24,14 @@ pub struct LabelColumns {
 ///
 /// # Errors
 /// Those of [`crate::read()`] that concern the table.
-pub fn read_labels(
-    path: &Path,
-    names: &[&str],
-    robot: &Robot,
-    options: &ReadOptions,
-) -> Result<LabelColumns> {
+pub fn read_labels(path: &Path, names: &[&str], robot: &Robot, options: &ReadOptions) -> Result<LabelColumns> {
     let no_map = ColumnMap::default();
     document::reading(|| {
         let blocks = OpeningContext { robot, options }.blocks(path, "a file of measurements (CSV)")?;
         let mut table = FileTable::open(path, blocks, options.mapping.as_ref().unwrap_or(&no_map))?;
         let at = |name: &&str| table.header.cells.iter().position(|it| it.name.eq_ignore_ascii_case(name));
         let columns: Vec<Option<usize>> = names.iter().map(at).collect();
-        let mut labels =
-            LabelColumns { has: columns.iter().map(Option::is_some).collect(), ..LabelColumns::default() };
+        let mut labels = LabelColumns { has: columns.iter().map(Option::is_some).collect(), ..LabelColumns::default() };
         table.some_rows("at least one measurement", |row| {
             labels.lines.insert(row.line, columns.iter().map(|column| row.word(*column)).collect());
             Ok(())

@@ -53,9 +53,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
-    if let Some(mut plan) =
-        JoinPlan::from_paths(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))?
-    {
+    if let Some(mut plan) = JoinPlan::from_paths(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
         plan.settle_sets(robot, options, &no_map)?;
         let mut reader = MeasurementReader::new(robot, options, &no_map);
         reader.read_joined(&plan)?;
@@ -90,12 +88,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
 ///
 /// # Errors
 /// Those of [`read()`].
-pub fn parse(
-    text: &str,
-    path: impl AsRef<Path>,
-    robot: &Robot,
-    options: &ReadOptions,
-) -> Result<MeasurementFile> {
+pub fn parse(text: &str, path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let path = path.as_ref();
     document::reading_text(path, text, || read_all(&[path], robot, options))
 }
@@ -211,8 +204,7 @@ impl<'a> MeasurementReader<'a> {
         self.refuse_single_rows(path)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         if self.found.data.len() == first {
-            let message =
-                "found no position in any row, expected at least one that is neither empty nor zero";
+            let message = "found no position in any row, expected at least one that is neither empty nor zero";
             return Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
         }
         let skipped = beam_breaks::lost_words(&lost);
@@ -248,9 +240,7 @@ impl<'a> MeasurementReader<'a> {
                 cursor.put_readings(readings);
             }
             cursor.take_readings(row)?;
-            if self.begins_pair(row, cursor)?
-                || beam_breaks::take_out(&mut lost, row, cursor, self.options.strict)?
-            {
+            if self.begins_pair(row, cursor)? || beam_breaks::take_out(&mut lost, row, cursor, self.options.strict)? {
                 return Ok(());
             }
             cursor.observe(row);
@@ -270,8 +260,7 @@ impl<'a> MeasurementReader<'a> {
             && !self.options.ignore_sets
             && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
         {
-            let message =
-                format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
+            let message = format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
             let error = ErrorKind::Option.error(message);
             return Err(match self.found.data.files.as_slice() {
                 [only] => error.in_file(only),

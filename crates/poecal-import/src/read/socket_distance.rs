@@ -73,12 +73,15 @@ impl SocketDistances {
             if found.len() == before {
                 let names: Vec<String> = sockets.values().flatten().map(|(name, _)| name.clone()).collect();
                 return ErrorKind::Option.refuse(match (pair, names.as_slice()) {
-                    (_, []) => "found a distance of sockets and no row that names a socket, expected a column `socket`".to_owned(),
+                    (_, []) => "found a distance of sockets and no row that names a socket, expected a column `socket`"
+                        .to_owned(),
                     (Some(pair), names) => format!(
                         "found the sockets `{pair}` and no place that has both, expected two of {}",
                         first_few(names)
                     ),
-                    (None, _) => "found a distance of sockets and only one socket in each place, expected two".to_owned(),
+                    (None, _) => {
+                        "found a distance of sockets and only one socket in each place, expected two".to_owned()
+                    }
                 });
             }
         }

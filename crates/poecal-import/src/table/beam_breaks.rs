@@ -85,8 +85,7 @@ fn beam(row: &FileRow<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Beam {
         return if first.is_lost(inputs) && target.position.is_none() { Beam::Zero } else { Beam::Seen };
     }
     let position = target.position.map_or([None; 3], |position| inputs.all(position));
-    let orientation =
-        || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
+    let orientation = || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
     if position == [None; 3] {
         return if orientation().all(|part| part.is_none()) { Beam::Empty } else { Beam::Seen };
     }
@@ -111,8 +110,7 @@ fn zero_words(target: &TargetLayout) -> &'static str {
 }
 
 fn beam_break_error(row: &FileRow<'_>, target: &TargetLayout, inputs: &Cursor<'_>, found: &str) -> Error {
-    let first =
-        target.position.iter().flatten().chain(target.kinds.iter().flat_map(|kind| &kind.numbers)).next();
+    let first = target.position.iter().flatten().chain(target.kinds.iter().flat_map(|kind| &kind.numbers)).next();
     let first = first.copied().unwrap_or(0);
     let message = format!("found {found}, as of a lost beam, expected what was measured; leave out the row");
     row.error(inputs.column(first), message)

@@ -122,18 +122,15 @@ pub fn split<'a>(
     }
     let mut rest = line;
     loop {
-        rest =
-            rest.trim_start_matches(|c: char| c.is_whitespace() && separator != Separator::Tab || c == ' ');
+        rest = rest.trim_start_matches(|c: char| c.is_whitespace() && separator != Separator::Tab || c == ' ');
         if rest.is_empty() && separator == Separator::Whitespace {
             return Ok(());
         }
         let offset = line.len() - rest.len();
         let (cell, after) = match rest.strip_prefix('"') {
             Some(quoted) => {
-                let end = closing_quote(quoted).ok_or((
-                    offset,
-                    "found a quote that is not closed on its line, expected a closing `\"`",
-                ))?;
+                let end = closing_quote(quoted)
+                    .ok_or((offset, "found a quote that is not closed on its line, expected a closing `\"`"))?;
                 let (raw, after) = quoted.split_at(end);
                 (Cell { raw, offset, escaped: raw.contains('"') }, after.strip_prefix('"').unwrap_or(after))
             }
@@ -149,10 +146,7 @@ pub fn split<'a>(
             None => return Ok(()),
             Some(c) if separator.matches(c) => rest = characters.as_str(),
             Some(_) => {
-                return Err((
-                    line.len() - after.len(),
-                    "found text after a closing quote, expected a separator",
-                ));
+                return Err((line.len() - after.len(), "found text after a closing quote, expected a separator"));
             }
         }
     }

@@ -21,8 +21,7 @@ const ENDINGS: [&str; 6] = ["", "txt", "dat", "csv", "yaml", "yml"];
 /// Keys of a list of readings, and of the names of its joints.
 const LISTS: [&str; 5] = ["joints", "joint_positions", "positions", "position", "q"];
 const NAMES: [&str; 4] = ["joint_names", "names", "name", "joints"];
-const EXPECTED: &str =
-    "the joint readings of one picture: numbers, `joints: [0.1, …]`, or lines `joint1: 0.1`";
+const EXPECTED: &str = "the joint readings of one picture: numbers, `joints: [0.1, …]`, or lines `joint1: 0.1`";
 
 /// The files of a folder.
 pub(crate) struct ConfigurationFolder {
@@ -51,8 +50,7 @@ pub(crate) fn is_folder(path: &Path) -> bool {
 
 /// An error in the table of a folder, in the file that made the line.
 pub(crate) fn in_its_file(error: Error, folder: &Path) -> Error {
-    let is_of_table =
-        |place: &&poecal_numerics::error::FilePosition| place.path == folder && is_folder(folder);
+    let is_of_table = |place: &&poecal_numerics::error::FilePosition| place.path == folder && is_folder(folder);
     let Some(line) = error.place().filter(is_of_table).and_then(|place| place.line) else { return error };
     let files = numbered_files(folder).unwrap_or_default().0;
     // The line is below the header.
@@ -102,8 +100,7 @@ pub(crate) fn read(folder: &Path) -> Result<ConfigurationFolder> {
 
 /// The names of the files of readings, by their numbers, and entries with such a name that are no files.
 fn numbered_files(folder: &Path) -> Result<(Vec<String>, Vec<SkippedEntry>)> {
-    const EXPECTED: &str =
-        "`configuration_1`, `configuration_2.yaml`, … with the joint readings of each picture";
+    const EXPECTED: &str = "`configuration_1`, `configuration_2.yaml`, … with the joint readings of each picture";
     let error = |message: String| Error::new(ErrorKind::Measurement, message).in_file(folder);
     let unreadable = |error| source::unreadable_error(folder, &error, EXPECTED);
     let is_of_bag = |name: &String| name == "metadata.yaml" || name.ends_with(".db3");
@@ -148,9 +145,9 @@ impl FileReadings {
         };
         let lines = || text.lines().map(|line| line.split('#').next().unwrap_or_default());
         let is_between = |it: char| it.is_whitespace() || ",;[]()".contains(it);
-        let words = lines().enumerate().flat_map(|(at, line)| {
-            line.split(is_between).filter(|it| !it.is_empty()).map(move |it| (at, it))
-        });
+        let words = lines()
+            .enumerate()
+            .flat_map(|(at, line)| line.split(is_between).filter(|it| !it.is_empty()).map(move |it| (at, it)));
         let numbers: std::result::Result<Vec<f64>, (usize, &str)> =
             words.map(|(at, word)| number(word).ok_or((at + 1, word))).collect();
         let is_yaml = || lines().any(|line| line.contains([':', '{']) || line.trim_start().starts_with("- "));
@@ -185,16 +182,12 @@ impl FileReadings {
         }
         match (self.names.is_empty(), first.names.is_empty()) {
             (true, true) => Ok(self.values.clone()),
-            (true, false) => {
-                refuse("found readings without names, expected the names of the joints".to_owned())
-            }
+            (true, false) => refuse("found readings without names, expected the names of the joints".to_owned()),
             (false, true) => refuse("found readings with names of joints, expected them without".to_owned()),
             (false, false) => {
                 let own = |name: &String| self.names.iter().zip(&self.values).find(|it| it.0 == name);
                 match first.names.iter().find(|name| own(name).is_none()) {
-                    Some(name) => {
-                        refuse(format!("found no reading of `{}`, expected one", shorten_name(name)))
-                    }
+                    Some(name) => refuse(format!("found no reading of `{}`, expected one", shorten_name(name))),
                     None => Ok(first.names.iter().filter_map(own).map(|it| *it.1).collect()),
                 }
             }
@@ -209,9 +202,7 @@ fn number(text: &str) -> Option<f64> {
 /// Names, if any, and values of a mapping or a list; else the line with the defect there.
 fn of_leaves(all: &[YamlLeaf]) -> std::result::Result<(Vec<String>, Vec<f64>), (usize, String)> {
     let below = |key: &&str| -> Vec<&YamlLeaf> {
-        all.iter()
-            .filter(|leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == key))
-            .collect()
+        all.iter().filter(|leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == key)).collect()
     };
     let is_number = |leaf: &&YamlLeaf| number(&leaf.text).is_some();
     let lists = LISTS.iter().map(below);
@@ -268,11 +259,7 @@ mod tests {
             "name: [a, b]\nposition: [0.1, -0.2]\n",
             "{joints: [a, b], positions: [0.1, -0.2]}",
         ] {
-            assert_eq!(
-                readings_of_text(text),
-                Ok((vec!["a".to_owned(), "b".to_owned()], vec![0.1, -0.2])),
-                "{text}"
-            );
+            assert_eq!(readings_of_text(text), Ok((vec!["a".to_owned(), "b".to_owned()], vec![0.1, -0.2])), "{text}");
         }
     }
 

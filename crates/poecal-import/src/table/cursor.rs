@@ -59,8 +59,7 @@ impl<'r> Cursor<'r> {
                     "" => None,
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
                         let hint = hint(text, index < self.turns.len());
-                        let message =
-                            format!("found `{text}` in column `{}`, expected {expected}{hint}", input.label);
+                        let message = format!("found `{text}` in column `{}`, expected {expected}{hint}", input.label);
                         row.error(column, message)
                     })?),
                 }
@@ -113,8 +112,7 @@ impl<'r> Cursor<'r> {
                 continue;
             };
             let values = [0, 1, 2].map(|at| self.value(columns[at]));
-            let ([Some(a), Some(b), Some(c)], true) =
-                (values, [x, y, z].iter().all(|it| it.unit.symbol() == "rad"))
+            let ([Some(a), Some(b), Some(c)], true) = (values, [x, y, z].iter().all(|it| it.unit.symbol() == "rad"))
             else {
                 continue;
             };

@@ -6,8 +6,8 @@ use poecal_numerics::error::{Error, ErrorKind, position};
 
 /// Characters of the bytes from 0x80 to 0x9F; bytes without a character have `\0`.
 const WINDOWS: [char; 32] = [
-    '€', '\0', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\0', 'Ž', '\0', '\0', '‘', '’', '“',
-    '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\0', 'ž', 'Ÿ',
+    '€', '\0', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\0', 'Ž', '\0', '\0', '‘', '’', '“', '”', '•',
+    '–', '—', '˜', '™', 'š', '›', 'œ', '\0', 'ž', 'Ÿ',
 ];
 
 /// True if bytes are the beginning of UTF-16: with a byte order mark, or every other byte of the first two characters is zero.
@@ -59,9 +59,11 @@ pub(crate) fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) ->
         Some(found) => format!("the byte 0x{found:02X}"),
     };
     let (line, column) = position(&before, before.len());
-    ErrorKind::Syntax
-        .error(format!("found {found}, expected text; save the file as `CSV UTF-8`"))
-        .at_position(path, lines + line, column)
+    ErrorKind::Syntax.error(format!("found {found}, expected text; save the file as `CSV UTF-8`")).at_position(
+        path,
+        lines + line,
+        column,
+    )
 }
 
 #[cfg(test)]

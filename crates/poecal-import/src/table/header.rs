@@ -58,16 +58,7 @@ impl<'a> Header<'a> {
                 places.and_modify(|(_, second)| *second = second.or(Some(index))).or_insert((index, None));
             }
         }
-        Ok(Header {
-            path,
-            line,
-            cells,
-            named,
-            units_line: None,
-            below: Vec::new(),
-            names: Vec::new(),
-            sheet: None,
-        })
+        Ok(Header { path, line, cells, named, units_line: None, below: Vec::new(), names: Vec::new(), sheet: None })
     }
 
     /// Adds the line of units.
@@ -149,12 +140,7 @@ impl<'a> Header<'a> {
     }
 
     /// Unit of a column by the header, the line of units, or both.
-    pub(crate) fn unit(
-        &self,
-        index: usize,
-        quantity: Unit,
-        purpose: &str,
-    ) -> Result<Option<(NamedUnit, UnitSource)>> {
+    pub(crate) fn unit(&self, index: usize, quantity: Unit, purpose: &str) -> Result<Option<(NamedUnit, UnitSource)>> {
         let Some(cell) = self.cells.get(index) else { return Ok(None) };
         let parse = |symbol: &str, place: (usize, usize)| {
             NamedUnit::parse_for(symbol, quantity, &format!(" {purpose}"))
@@ -183,8 +169,7 @@ impl<'a> Header<'a> {
     /// Index of the column of this name, which may include the unit as in the file.
     pub(crate) fn find(&self, name: &str) -> Result<Option<usize>> {
         if let Some(second) = self.second_index(name) {
-            let message =
-                format!("found a second column `{name}`, expected one; rename or remove one of them");
+            let message = format!("found a second column `{name}`, expected one; rename or remove one of them");
             return Err(self.error(ErrorKind::Measurement, second, message));
         }
         let by_number = || number_of_column(name).map(|it| it - 1).filter(|it| *it < self.cells.len());

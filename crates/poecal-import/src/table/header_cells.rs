@@ -79,10 +79,8 @@ pub(super) fn beside_name(text: &str) -> Option<String> {
     let end = text.strip_suffix(']').unwrap_or(text);
     let digits = end.len() - end.trim_end_matches(|it: char| it.is_ascii_digit()).len();
     let (start, number) = (text.get(..end.len() - digits)?, text.get(end.len() - digits..)?);
-    let stem = start
-        .strip_suffix("name")
-        .map(|stem| (stem, ""))
-        .or(start.strip_suffix("name[").map(|stem| (stem, "[")));
+    let stem =
+        start.strip_suffix("name").map(|stem| (stem, "")).or(start.strip_suffix("name[").map(|stem| (stem, "[")));
     let (stem, bracket) = stem.filter(|_| digits > 0)?;
     Some(format!("{stem}position{bracket}{number}"))
 }

@@ -22,9 +22,8 @@ impl fmt::Debug for FunctionKind {
 
 /// All kinds.
 pub(crate) fn kinds() -> impl Iterator<Item = FunctionKind> {
-    let of = |row: &'static TableRow| {
-        row.columns.iter().map(|columns| FunctionKind { function: row.function, columns })
-    };
+    let of =
+        |row: &'static TableRow| row.columns.iter().map(|columns| FunctionKind { function: row.function, columns });
     FUNCTIONS.iter().flat_map(of)
 }
 
@@ -54,10 +53,7 @@ impl FunctionKind {
 
     /// Words of a column of words.
     pub(crate) fn words(column: &str) -> impl Iterator<Item = &'static str> {
-        kinds()
-            .filter_map(|kind| kind.columns.word)
-            .filter(move |(name, _)| *name == column)
-            .map(|(_, word)| word)
+        kinds().filter_map(|kind| kind.columns.word).filter(move |(name, _)| *name == column).map(|(_, word)| word)
     }
 }
 

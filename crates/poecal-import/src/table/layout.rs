@@ -47,12 +47,7 @@ pub(crate) struct ColumnLayout {
 
 impl ColumnLayout {
     /// The layout of a measurement file.
-    pub(crate) fn new(
-        header: &Header<'_>,
-        robot: &Robot,
-        options: &ReadOptions,
-        map: &ColumnMap,
-    ) -> Result<Self> {
+    pub(crate) fn new(header: &Header<'_>, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Result<Self> {
         let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         let targets = builder.targets()?;
         builder.check_distinct()?;
@@ -111,12 +106,7 @@ impl ColumnLayout {
     }
 
     /// The layout of a file that has joint readings of pictures: joints, `id` and `set`.
-    pub(crate) fn pictures(
-        header: &Header<'_>,
-        robot: &Robot,
-        options: &ReadOptions,
-        map: &ColumnMap,
-    ) -> Result<Self> {
+    pub(crate) fn pictures(header: &Header<'_>, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Result<Self> {
         let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
@@ -126,12 +116,7 @@ impl ColumnLayout {
     }
 
     /// The layout of a file that is read only for its joints.
-    pub(crate) fn joints(
-        header: &Header<'_>,
-        robot: &Robot,
-        options: &ReadOptions,
-        map: &ColumnMap,
-    ) -> Result<Self> {
+    pub(crate) fn joints(header: &Header<'_>, robot: &Robot, options: &ReadOptions, map: &ColumnMap) -> Result<Self> {
         let mut builder = Builder::new(header, robot, map, options.controller.as_ref())?;
         builder.check_distinct()?;
         let id = builder.id_column()?;

@@ -91,8 +91,7 @@ impl<'a> FileTable<'a> {
     /// Reads the header with the lines of separator and units; the separator is that of the mapping, a stated or a recognised one.
     pub(crate) fn open(path: &'a Path, mut blocks: LineBlocks<'a>, map: &ColumnMap) -> Result<Self> {
         blocks.begin()?;
-        let none =
-            || ErrorKind::Syntax.error("found no line with text, expected a header and rows").in_file(path);
+        let none = || ErrorKind::Syntax.error("found no line with text, expected a header and rows").in_file(path);
         let above = if map.skip_lines == 0 { lines_above(&blocks, map) } else { map.skip_lines };
         let (mut line, mut text) = next_line(&mut blocks, above)?.ok_or_else(none)?;
         if let Some(error) = model_for_table(&text, path, line) {
@@ -187,15 +186,7 @@ impl<'a> FileTable<'a> {
         let FileTable { header, separator, blocks, places, header_end, .. } = self;
         let lines = blocks.lines(*header_end);
         let (text, places) = (blocks.text(), places.as_ref());
-        Ok(Some(TableRows {
-            text,
-            header,
-            separator: *separator,
-            places,
-            lines,
-            cells: Vec::new(),
-            is_first,
-        }))
+        Ok(Some(TableRows { text, header, separator: *separator, places, lines, cells: Vec::new(), is_first }))
     }
 }
 
@@ -204,9 +195,7 @@ pub(crate) fn refuse_more_rows(read: usize, row: &FileRow<'_>) -> Result<()> {
     if read <= ResourceLimit::Rows.most_held() {
         return Ok(());
     }
-    Err(ErrorKind::Measurement
-        .error(ResourceLimit::Rows.exceeded_error("one file"))
-        .at_line(row.path, row.line))
+    Err(ErrorKind::Measurement.error(ResourceLimit::Rows.exceeded_error("one file")).at_line(row.path, row.line))
 }
 
 impl FileRow<'_> {
@@ -237,10 +226,7 @@ mod tests {
         limits::run_with_limits(limits::current_limits().with_limit(ResourceLimit::Rows, 3), || {
             assert!(refuse_more_rows(3, &row).is_ok());
             let error = refuse_more_rows(4, &row).unwrap_err().to_string();
-            assert!(
-                error.starts_with("x.csv:7: found more than 3 rows in one file, expected at most"),
-                "{error}"
-            );
+            assert!(error.starts_with("x.csv:7: found more than 3 rows in one file, expected at most"), "{error}");
         });
     }
 
@@ -286,9 +272,7 @@ mod tests {
             rows(good.as_bytes(), WHOLE)
                 .map(|rows| { rows.into_iter().map(|(line, cells)| (line + 3, cells)).collect() })
         );
-        for (good, at) in
-            [good, &around].into_iter().flat_map(|text| (0..text.len()).map(move |at| (text, at)))
-        {
+        for (good, at) in [good, &around].into_iter().flat_map(|text| (0..text.len()).map(move |at| (text, at))) {
             attempt(&good.as_bytes()[..at]);
             for byte in [b'"', b';', b',', b'\n', b'\r', b'[', b']', b'-', b'#', 0, 0xff] {
                 let mut bytes = good.as_bytes().to_vec();

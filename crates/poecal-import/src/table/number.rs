@@ -88,8 +88,7 @@ pub(crate) fn number_of(text: &str) -> Option<f64> {
         return None;
     }
     let is_comma = text.contains(',') && !text.contains('.');
-    let found =
-        if is_comma { fast_float2::parse(text.replacen(',', ".", 1)) } else { fast_float2::parse(text) };
+    let found = if is_comma { fast_float2::parse(text.replacen(',', ".", 1)) } else { fast_float2::parse(text) };
     found.ok().filter(|it: &f64| it.is_finite())
 }
 
@@ -113,10 +112,7 @@ mod tests {
         assert_eq!(numbers.parse("-2,02011E+13", 3), Ok(-2.020_11e13));
         assert_eq!(numbers.parse("1.5", 4), Err("a number with a decimal comma as in line 3".to_owned()));
         let mut numbers = NumberReader::new(Some(DecimalSign::Point));
-        assert_eq!(
-            numbers.parse("1,5", 4),
-            Err("a number with a decimal point as the mapping states".to_owned())
-        );
+        assert_eq!(numbers.parse("1,5", 4), Err("a number with a decimal point as the mapping states".to_owned()));
     }
 
     #[test]
@@ -135,15 +131,9 @@ mod tests {
             "1.7976931348623157e308",
             "0.1000000000000000055511151231257827",
         ] {
-            assert_eq!(
-                numbers.parse(text, 1).unwrap().to_bits(),
-                text.parse::<f64>().unwrap().to_bits(),
-                "{text}"
-            );
+            assert_eq!(numbers.parse(text, 1).unwrap().to_bits(), text.parse::<f64>().unwrap().to_bits(), "{text}");
         }
-        for text in
-            ["", ".", "-", "e5", "1e", "1e+", "1 ", "1..2", "1e5.0", "1_0", "inf", "nan", "infinity", "1e999"]
-        {
+        for text in ["", ".", "-", "e5", "1e", "1e+", "1 ", "1..2", "1e5.0", "1_0", "inf", "nan", "infinity", "1e999"] {
             assert!(numbers.parse(text, 1).is_err(), "{text}");
         }
     }
@@ -154,9 +144,7 @@ mod tests {
             assert_eq!(NumberReader::new(None).parse(text, 1), Err(NO_GROUPS.to_owned()), "{text}");
         }
         assert_eq!(NumberReader::new(None).parse("2024-01-02 x", 1), Err("a finite number".to_owned()));
-        for text in
-            ["nan", "NaN", "inf", "-infinity", "1e999", "abc", "", "1e", "--1", "0x10", "1_0", "1,234.5"]
-        {
+        for text in ["nan", "NaN", "inf", "-infinity", "1e999", "abc", "", "1e", "--1", "0x10", "1_0", "1,234.5"] {
             assert!(NumberReader::new(None).parse(text, 1).is_err(), "{text}");
         }
     }

@@ -19,8 +19,7 @@ pub(crate) fn match_numbered_columns(
     map: &ColumnMap,
     names: &[String],
 ) -> Option<Vec<(String, String)>> {
-    let joints: Vec<&String> =
-        names.iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor).collect();
+    let joints: Vec<&String> = names.iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor).collect();
     if !map.joints.is_empty() || joints.iter().any(|name| header.count(name) > 0) {
         return None;
     }
@@ -39,8 +38,7 @@ fn with_more(header: &Header<'_>, joints: &[&String]) -> Option<Vec<String>> {
     if first.chars().count() < 2 {
         return None;
     }
-    let around: BTreeSet<(&str, &str)> =
-        cells.iter().filter_map(|(text, _)| text.split_once(first.as_str())).collect();
+    let around: BTreeSet<(&str, &str)> = cells.iter().filter_map(|(text, _)| text.split_once(first.as_str())).collect();
     let columns = |(before, behind): (&str, &str)| -> Option<Vec<String>> {
         let is_other = ColumnRole::Other.is_in(before) || ColumnRole::Other.is_in(behind);
         let of = |joint: &&String| {
@@ -76,10 +74,7 @@ fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
     };
     // Columns with any name, one for each joint.
     let is_any = |stem: &str| {
-        joints >= FEWEST
-            && !stem.is_empty()
-            && !ColumnRole::Other.is_in(stem)
-            && !ColumnRole::InStatistic.is_in(stem)
+        joints >= FEWEST && !stem.is_empty() && !ColumnRole::Other.is_in(stem) && !ColumnRole::InStatistic.is_in(stem)
     };
     of(&is_reading).or_else(|| of(&|stem| ColumnRole::Joint.has(stem))).or_else(|| of(&is_any))
 }
@@ -87,9 +82,8 @@ fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
 /// The columns with Yaskawa's letters.
 fn by_letters(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
     let letters = YASKAWA.into_iter().find(|it| it.len() == joints)?;
-    let of = |letter: char| {
-        header.cells.iter().find(|cell| cell.name.eq_ignore_ascii_case(letter.encode_utf8(&mut [0; 4])))
-    };
+    let of =
+        |letter: char| header.cells.iter().find(|cell| cell.name.eq_ignore_ascii_case(letter.encode_utf8(&mut [0; 4])));
     letters.chars().map(|it| of(it).map(|cell| cell.name.clone())).collect()
 }
 

@@ -124,9 +124,7 @@ impl OrientationForm {
 fn quaternion(q: Vector4<f64>) -> std::result::Result<Matrix3<f64>, String> {
     let norm = q.norm();
     if (norm - 1.0).abs() > QUATERNION_TOLERANCE {
-        return Err(format!(
-            "found a quaternion of norm {norm:.4}, expected 1 to within {QUATERNION_TOLERANCE}"
-        ));
+        return Err(format!("found a quaternion of norm {norm:.4}, expected 1 to within {QUATERNION_TOLERANCE}"));
     }
     Ok(rotation::from_quaternion_xyzw(&q))
 }
@@ -201,8 +199,7 @@ mod tests {
             assert!((found - turned).amax() < 1e-6);
             assert!((found.transpose() * found - Matrix3::identity()).amax() < 1e-15);
         }
-        let mirrored: Vec<f64> =
-            by_rows.iter().enumerate().map(|(k, it)| if k < 3 { -it } else { *it }).collect();
+        let mirrored: Vec<f64> = by_rows.iter().enumerate().map(|(k, it)| if k < 3 { -it } else { *it }).collect();
         let error = OrientationForm::MatrixByRows.rotation(&mirrored).unwrap_err();
         assert!(error.contains("a reflection"), "{error}");
         let error = OrientationForm::MatrixByRows.rotation(&[0.5; 9]).unwrap_err();

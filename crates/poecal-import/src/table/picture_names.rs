@@ -54,10 +54,7 @@ impl<'a> PicturePartners<'a> {
 }
 
 /// Pairs of names without an equal in the other file that end in the same number, each once in its file.
-fn same_numbers<'a>(
-    own: &BTreeSet<&'a String>,
-    others: &BTreeSet<&'a String>,
-) -> Vec<(&'a String, &'a String)> {
+fn same_numbers<'a>(own: &BTreeSet<&'a String>, others: &BTreeSet<&'a String>) -> Vec<(&'a String, &'a String)> {
     let (numbers, other_numbers) = (by_number(own.iter().copied()), by_number(others.iter().copied()));
     let pair = |(number, name): (u64, Option<&'a String>)| {
         let name = name.filter(|name| !others.contains(name))?;

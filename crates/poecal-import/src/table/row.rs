@@ -27,8 +27,7 @@ pub(crate) fn measurement(
     (may_be_missing, strict): (bool, bool),
 ) -> Result<Option<Measurement>> {
     let Some(columns) = target.position else { return Ok(None) };
-    let may_be_missing =
-        may_be_missing || target.kinds.iter().any(|kind| kind.is_measured(row, inputs, false));
+    let may_be_missing = may_be_missing || target.kinds.iter().any(|kind| kind.is_measured(row, inputs, false));
     let position = match inputs.all(columns) {
         [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
         [None, None, None] if may_be_missing => return Ok(None),
@@ -50,9 +49,7 @@ pub(crate) fn measurement(
                            poses are target_from_device";
             return Err(row.error(inputs.column(columns[0]), message));
         }
-        (Some(rotation), PoseDirection::DeviceFromTarget) => {
-            Measurement::of_pose(&Pose::new(rotation, position))
-        }
+        (Some(rotation), PoseDirection::DeviceFromTarget) => Measurement::of_pose(&Pose::new(rotation, position)),
         (Some(rotation), PoseDirection::TargetFromDevice) => {
             Measurement::of_pose(&Pose::new(rotation, position).inverse())
         }
@@ -61,11 +58,7 @@ pub(crate) fn measurement(
 }
 
 /// The measured rotation; `None` if all its cells are empty.
-fn orientation(
-    row: &FileRow<'_>,
-    target: &TargetLayout,
-    inputs: &Cursor<'_>,
-) -> Result<Option<Matrix3<f64>>> {
+fn orientation(row: &FileRow<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Result<Option<Matrix3<f64>>> {
     let Some((form, columns)) = &target.orientation else { return Ok(None) };
     let mut values = [0.0; MOST_PARTS];
     let mut empty = None;
@@ -100,9 +93,7 @@ pub(crate) fn component_noise(
 ) -> Result<Option<[Option<f64>; 3]>> {
     let measured = seen.position_components().map(|value| value.is_some());
     let mut found = [None; 3];
-    for ((found, input), _) in
-        found.iter_mut().zip(target.sigma_components).zip(measured).filter(|(_, is)| *is)
-    {
+    for ((found, input), _) in found.iter_mut().zip(target.sigma_components).zip(measured).filter(|(_, is)| *is) {
         *found = inputs.sigma(row, input)?;
     }
     let is_whole = found.iter().zip(measured).all(|(sigma, is)| sigma.is_some() == is);
@@ -110,8 +101,7 @@ pub(crate) fn component_noise(
         return Ok(Some(found).filter(|_| found != [None; 3]));
     }
     let column = target.sigma_components.iter().flatten().map(|&input| inputs.column(input)).next();
-    let message =
-        "found a standard deviation of some components, expected one of each that was measured, or of none";
+    let message = "found a standard deviation of some components, expected one of each that was measured, or of none";
     Err(row.error(column.unwrap_or(0), message))
 }
 
@@ -149,11 +139,8 @@ impl KindColumns {
         match self.kind.columns.from {
             FormCriterion::Numbers { .. } => has_number(),
             FormCriterion::Name { .. } => {
-                let is_named = self
-                    .places
-                    .last()
-                    .and_then(|&at| row.cells.get(at))
-                    .is_some_and(|it| !it.text().is_empty());
+                let is_named =
+                    self.places.last().and_then(|&at| row.cells.get(at)).is_some_and(|it| !it.text().is_empty());
                 is_named && (!has_position || has_number())
             }
         }
@@ -186,15 +173,11 @@ impl KindColumns {
                     return Err(inputs.error(row, input, "found an empty cell", expected));
                 }
             };
-            let is_size =
-                columns.from == (FormCriterion::Name { size: true }) && inputs.value(input).is_some();
+            let is_size = columns.from == (FormCriterion::Name { size: true }) && inputs.value(input).is_some();
             if (is_size || columns.from == (FormCriterion::Numbers { above_zero: true })) && value <= 0.0 {
                 let text = row.raw_text(inputs.column(input));
-                let what = if is_size {
-                    columns.numbers.first().copied()
-                } else {
-                    Some(function.leading_quantity().name())
-                };
+                let what =
+                    if is_size { columns.numbers.first().copied() } else { Some(function.leading_quantity().name()) };
                 let expected = format!("a {} above 0", what.unwrap_or("number"));
                 return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
             }

@@ -27,11 +27,7 @@ impl FileTable<'_> {
     }
 
     /// Passes the rows of a table that must have one; `expected` describes it.
-    pub(crate) fn some_rows(
-        &mut self,
-        expected: &str,
-        take: impl FnMut(&FileRow<'_>) -> Result<()>,
-    ) -> Result<usize> {
+    pub(crate) fn some_rows(&mut self, expected: &str, take: impl FnMut(&FileRow<'_>) -> Result<()>) -> Result<usize> {
         match self.each_row(take)? {
             0 => Err(ErrorKind::Measurement
                 .error(format!("found a header and no rows, expected {expected}"))
@@ -121,8 +117,7 @@ impl TableRows<'_> {
         } else if found > expected && self.separator == Separator::Comma {
             "; numbers with a decimal comma need another separator, such as `;`, or quotes".to_owned()
         } else if found < expected {
-            "; add the missing cells (they may be empty), or put `#` in front of a line that is no row"
-                .to_owned()
+            "; add the missing cells (they may be empty), or put `#` in front of a line that is no row".to_owned()
         } else {
             String::new()
         }

@@ -35,13 +35,7 @@ impl WorkbookSheet {
     }
 
     /// An error in a cell, by its row of the sheet and its column of the table.
-    pub(crate) fn error(
-        &self,
-        path: &Path,
-        (row, column): (usize, usize),
-        kind: ErrorKind,
-        message: &str,
-    ) -> Error {
+    pub(crate) fn error(&self, path: &Path, (row, column): (usize, usize), kind: ErrorKind, message: &str) -> Error {
         let message = format!("sheet `{}`, cell {}: {message}", self.name, self.cell(column, row));
         Error::new(kind, message).in_file(path)
     }
@@ -54,14 +48,7 @@ impl SourceCells {
     }
 
     /// An error in a row of the table, by its line of the file, and in a column.
-    pub(crate) fn error(
-        &self,
-        path: &Path,
-        line: usize,
-        column: usize,
-        kind: ErrorKind,
-        message: String,
-    ) -> Error {
+    pub(crate) fn error(&self, path: &Path, line: usize, column: usize, kind: ErrorKind, message: String) -> Error {
         match &self.sheet {
             Some(sheet) => sheet.error(path, (line, column), kind, &message),
             None => Error::new(kind, message).at_line(path, line),

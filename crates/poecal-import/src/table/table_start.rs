@@ -35,8 +35,7 @@ pub(super) fn lines_above(blocks: &LineBlocks<'_>, map: &ColumnMap) -> usize {
         let is_second = some.get(first + 1).is_none() || is_row(first + 1);
         names >= 3 && numbers == 0 && is_row(first) && is_second
     };
-    let is_stated =
-        some.first().is_some_and(|it| it.1.trim_start_matches('"').to_lowercase().starts_with("sep="));
+    let is_stated = some.first().is_some_and(|it| it.1.trim_start_matches('"').to_lowercase().starts_with("sep="));
     if is_stated || is_header(0) {
         return 0;
     }

@@ -64,8 +64,7 @@ pub(crate) struct FileRemarks {
 impl<'a> LineBlocks<'a> {
     /// The blocks of a file; `expected` describes it in messages.
     pub(crate) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
-        let source =
-            TextSource::File(HashingReader::new(source::open(path, expected, ResourceLimit::Table)?));
+        let source = TextSource::File(HashingReader::new(source::open(path, expected, ResourceLimit::Table)?));
         Ok(LineBlocks::new(path, expected, source, BLOCK))
     }
 
@@ -75,8 +74,7 @@ impl<'a> LineBlocks<'a> {
             return LineBlocks::open(path, expected);
         }
         let ConfigurationFolder { text, sha256, left } = configurations::read(path)?;
-        let mut blocks =
-            LineBlocks::from_made_text(path, expected, Box::new(Cursor::new(text)), Some(sha256));
+        let mut blocks = LineBlocks::from_made_text(path, expected, Box::new(Cursor::new(text)), Some(sha256));
         blocks.said.warnings.extend(left.iter().map(ToString::to_string));
         Ok(blocks)
     }
@@ -119,12 +117,7 @@ impl<'a> LineBlocks<'a> {
     /// The blocks of a text with the name `path` in messages, of `size` bytes per read.
     #[cfg(test)]
     pub(crate) fn with_block_size(path: &'a Path, text: &[u8], size: usize) -> Self {
-        LineBlocks::new(
-            path,
-            "a table (CSV)",
-            TextSource::Made(Box::new(Cursor::new(text.to_vec())), None),
-            size,
-        )
+        LineBlocks::new(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
     }
 
     fn new(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
@@ -169,8 +162,8 @@ impl<'a> LineBlocks<'a> {
             }
             let is_text = memchr::memchr(0, bytes.get(known..).unwrap_or_default()).is_none();
             // The first block determines the form of the file.
-            let is_enough = self.newline.is_some()
-                || memchr::memchr_iter(b'\n', &bytes).take(FIRST_LINES).count() == FIRST_LINES;
+            let is_enough =
+                self.newline.is_some() || memchr::memchr_iter(b'\n', &bytes).take(FIRST_LINES).count() == FIRST_LINES;
             if end.is_some() && is_enough || more == 0 || !is_text {
                 break;
             }
@@ -178,10 +171,7 @@ impl<'a> LineBlocks<'a> {
             let last = memchr::memrchr(b'\n', &bytes).map_or(0, |it| it + 1);
             if bytes.len() - last > LONGEST_LINE {
                 return Err(ErrorKind::Syntax
-                    .error(format!(
-                        "found a line longer than {} MiB, expected a table (CSV)",
-                        LONGEST_LINE >> 20
-                    ))
+                    .error(format!("found a line longer than {} MiB, expected a table (CSV)", LONGEST_LINE >> 20))
                     .at_line(self.path, self.lines + memchr::memchr_iter(b'\n', &bytes).count() + 1));
             }
         }
@@ -223,9 +213,8 @@ impl<'a> LineBlocks<'a> {
                 return self.text_of(bytes);
             }
         }
-        String::from_utf8(bytes).map_err(|error| {
-            not_utf8(self.path, error.as_bytes(), error.utf8_error().valid_up_to(), self.lines)
-        })
+        String::from_utf8(bytes)
+            .map_err(|error| not_utf8(self.path, error.as_bytes(), error.utf8_error().valid_up_to(), self.lines))
     }
 
     /// The whole text of UTF-16 as UTF-8; it becomes the source, without its first block, which is returned.
@@ -238,9 +227,7 @@ impl<'a> LineBlocks<'a> {
         };
         more.map_err(|error| unreadable_error(self.path, &error, self.expected))?;
         if bytes.len() as u64 > most {
-            return Err(ErrorKind::File
-                .error(ResourceLimit::Text.exceeded_error("UTF-16"))
-                .in_file(self.path));
+            return Err(ErrorKind::File.error(ResourceLimit::Text.exceeded_error("UTF-16")).in_file(self.path));
         }
         let text = of_utf16(&bytes).map_err(|(line, found)| {
             let message = format!("found {found}, expected UTF-16 text as before, or UTF-8");
@@ -371,9 +358,6 @@ mod tests {
         let source = TextSource::File(HashingReader::new(Input::from_reader(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
         let error = LineBlocks::new(path, expected, source, BLOCK).advance().unwrap_err().to_string();
-        assert_eq!(
-            error,
-            "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)"
-        );
+        assert_eq!(error, "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)");
     }
 }

@@ -3,8 +3,7 @@
 use super::roles::{ColumnRole, plain_letters};
 
 /// Units of times, with their sizes in seconds.
-const UNITS: [(&str, f64); 6] =
-    [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
+const UNITS: [(&str, f64); 6] = [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
 
 /// Unit, in seconds, of a column of times with this name and unit; `None` for another column.
 pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {

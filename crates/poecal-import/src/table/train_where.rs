@@ -39,11 +39,9 @@ impl FromStr for FitWhere {
             let values: Vec<String> = values.split(',').map(|value| value.trim().to_owned()).collect();
             FitWhere { column: column.trim().to_owned(), values }
         });
-        let is_whole =
-            |rule: &FitWhere| !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty());
+        let is_whole = |rule: &FitWhere| !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty());
         parts.filter(is_whole).ok_or_else(|| {
-            ErrorKind::Option
-                .error(format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]"))
+            ErrorKind::Option.error(format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]"))
         })
     }
 }

@@ -47,8 +47,7 @@ impl MeasurementReader<'_> {
         self.take_controller(path, layout)?;
         self.warn(path, turns::warning(&table.header, layout, self.map));
         self.found.notes.extend(turns::note(layout).map(|note| format!("{}: {note}", path.display())));
-        let mut own =
-            FileUnderstanding { points, poses, others, lost, ..FileUnderstanding::new(table, inputs, rows) };
+        let mut own = FileUnderstanding { points, poses, others, lost, ..FileUnderstanding::new(table, inputs, rows) };
         // Joints whose readings are in another file are no columns of this one.
         own.columns.drain(..if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 });
         self.found.understood.push(own);
@@ -60,8 +59,7 @@ impl MeasurementReader<'_> {
         let words = |it: &Option<Controller>| it.as_ref().map(|it| (it.third_axis, it.words()));
         let is_first = self.found.understood.is_empty();
         if !is_first && words(&self.found.data.controller) != words(&layout.controller) {
-            let shown =
-                |it: &Option<Controller>| it.as_ref().map_or("one by one".to_owned(), Controller::words);
+            let shown = |it: &Option<Controller>| it.as_ref().map_or("one by one".to_owned(), Controller::words);
             return Err(ErrorKind::Measurement
                 .error(format!(
                     "found joint readings of columns {} after a file with {}, expected the same in all files",

@@ -25,13 +25,8 @@ pub fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Resu
     if data.observations.iter().any(|row| row.from.is_some() || !row.measurement.is_place()) {
         return other_text(data, robot, noise, comment);
     }
-    let columns = [
-        OwnColumn::Joints,
-        OwnColumn::Position,
-        OwnColumn::Orientation,
-        OwnColumn::Instrument,
-        OwnColumn::Target,
-    ];
+    let columns =
+        [OwnColumn::Joints, OwnColumn::Position, OwnColumn::Orientation, OwnColumn::Instrument, OwnColumn::Target];
     let rows = SessionTableRows::new(data, robot, &columns)?.round_to_noise(noise);
     let mut out = format!("# {comment}\n{}\n", rows.header());
     for row in 0..data.len() {
@@ -53,8 +48,7 @@ fn with_unit(kind: &FunctionKind, name: &str) -> String {
 /// The columns of rows of other kinds, in the order of a file.
 fn other_columns() -> Vec<String> {
     let own = |kind: FunctionKind| {
-        let place =
-            kind.columns.places.last().into_iter().chain(kind.columns.word.as_ref().map(|(it, _)| it));
+        let place = kind.columns.places.last().into_iter().chain(kind.columns.word.as_ref().map(|(it, _)| it));
         let numbers = kind.columns.numbers.iter().map(|name| with_unit(&kind, name)).collect::<Vec<_>>();
         place.map(|name| (*name).to_owned()).chain(numbers).collect::<Vec<_>>()
     };
@@ -96,8 +90,7 @@ fn other_text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Re
     }
     let is_used = |column: &String| rows.iter().any(|(_, cells)| cells.contains_key(column));
     let used: Vec<String> = columns.into_iter().filter(is_used).collect();
-    let mut out =
-        format!("# {comment}\n{},{}\n", reading_header(data.reading_names(), &units), used.join(","));
+    let mut out = format!("# {comment}\n{},{}\n", reading_header(data.reading_names(), &units), used.join(","));
     for (readings, cells) in rows {
         let own = used.iter().map(|column| cells.get(column).map_or("", String::as_str));
         let line: Vec<&str> = readings.iter().map(String::as_str).chain(own).collect();
@@ -169,10 +162,8 @@ mod tests {
 
     #[test]
     fn a_joint_with_the_name_of_a_measured_column_is_refused() {
-        let joint = poecal_model::robot::Joint::prismatic(
-            "y",
-            poecal_arm::lie::Screw::prismatic(&nalgebra::Vector3::y()),
-        );
+        let joint =
+            poecal_model::robot::Joint::prismatic("y", poecal_arm::lie::Screw::prismatic(&nalgebra::Vector3::y()));
         let robot = Robot::new("slide", vec![joint], poecal_arm::lie::Pose::identity()).unwrap();
         let noise = Noise::new(0.0, 0.0);
         let error = text(&Dataset::new(robot.reading_names()), &robot, &noise, "").unwrap_err();
@@ -190,12 +181,8 @@ mod tests {
         use poecal_model::simulate::{SessionKind, Simulation, elbow};
         let exact = Noise::new(0.0, 0.0);
         for kind in SessionKind::all() {
-            let simulation = Simulation {
-                count: 12,
-                noise_position_m: 0.0,
-                noise_rotation_rad: 0.0,
-                ..Simulation::default()
-            };
+            let simulation =
+                Simulation { count: 12, noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
             let made = simulation.run(&elbow(), kind).unwrap();
             let text = text(&made.data, &made.nominal, &exact, "a session").unwrap();
             let data = parse(&text, "a table", &made.nominal, &ReadOptions::default()).unwrap().data;
@@ -204,10 +191,7 @@ mod tests {
             for (found, expected) in data.observations.iter().zip(&made.data.observations) {
                 // Faces are on their planes, up or down.
                 let (metres, radians) = found.measurement.distance_and_angle(&expected.measurement).unwrap();
-                assert!(
-                    metres < 1e-12 && (radians < 1e-7 || kind == SessionKind::FLUSH),
-                    "{metres} {radians}"
-                );
+                assert!(metres < 1e-12 && (radians < 1e-7 || kind == SessionKind::FLUSH), "{metres} {radians}");
                 assert_eq!(found.station, expected.station);
             }
         }

@@ -134,9 +134,7 @@ impl<'a> SessionTableRows<'a> {
             OwnColumn::Joints => self.readings(data.readings(row)),
             OwnColumn::Target => named(&data.targets, observation.target),
             OwnColumn::Instrument => named(&data.stations, observation.station),
-            OwnColumn::Position => {
-                seen.position_components().map(|it| number(it, self.mm, self.decimals[0])).to_vec()
-            }
+            OwnColumn::Position => seen.position_components().map(|it| number(it, self.mm, self.decimals[0])).to_vec(),
             OwnColumn::Orientation => {
                 let turn = seen.sees_orientation().then(|| seen.pose().quaternion_xyzw());
                 let part = |at| number(turn.map(|it| it[at]), NamedUnit::from(Unit::One), self.decimals[1]);
@@ -169,11 +167,7 @@ impl<'a> SessionTableRows<'a> {
                 unit.to_si((unit.from_si(reading) * TYPED).round() / TYPED)
             }
         };
-        readings
-            .iter()
-            .zip(&self.units)
-            .map(|(&reading, &unit)| decimal(typed(reading, unit), unit, None))
-            .collect()
+        readings.iter().zip(&self.units).map(|(&reading, &unit)| decimal(typed(reading, unit), unit, None)).collect()
     }
 }
 

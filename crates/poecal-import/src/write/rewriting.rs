@@ -75,8 +75,7 @@ pub fn rewrite_joints(
             .at_line(path, table.header.line));
     }
     let mut warnings = inputs.joint_warnings(&table.header)?;
-    warnings
-        .extend(inputs.layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
+    warnings.extend(inputs.layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
     rewritten.warnings = warnings.iter().map(|warning| escape_invisible(warning).into_owned()).collect();
     Ok(rewritten)
 }
@@ -91,8 +90,7 @@ fn columns(
     let Some(counting) = counting else { return Ok(terms.iter().map(|it| (it.column, it.unit)).collect()) };
     let mut columns = Vec::with_capacity(terms.len());
     for name in counting.names() {
-        let mut own =
-            terms.iter().filter(|it| header.cells.get(it.column).is_some_and(|cell| cell.name == *name));
+        let mut own = terms.iter().filter(|it| header.cells.get(it.column).is_some_and(|cell| cell.name == *name));
         let Some(first) = own.next() else { continue };
         if let Some(other) = own.find(|it| it.unit.symbol() != first.unit.symbol()) {
             return Err(ErrorKind::Measurement
@@ -111,10 +109,12 @@ fn columns(
 /// The inverse conversion of readings that are sums to their columns; `None` if each reading is a column.
 fn invert_sums(layout: &ColumnLayout, path: &Path) -> Result<Option<ControllerMap>> {
     if let Some(input) = layout.inputs.iter().find(|it| matches!(it.source, InputSource::Constant(_))) {
-        return Err(ErrorKind::Measurement.error(format!(
-            "joint `{}` is a constant by the mapping, expected a column of its own, which can be corrected",
-            input.name
-        )).in_file(path));
+        return Err(ErrorKind::Measurement
+            .error(format!(
+                "joint `{}` is a constant by the mapping, expected a column of its own, which can be corrected",
+                input.name
+            ))
+            .in_file(path));
     }
     let sums = layout.controller.as_ref().filter(|it| !it.is_plain());
     sums.map(|it| it.controller_map().map_err(|error| error.in_file(path))).transpose()

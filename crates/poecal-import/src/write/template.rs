@@ -43,11 +43,7 @@ pub fn template(robot: &Robot, kind: SessionKind) -> Result<String> {
     {
         if !mounts.is_empty() {
             let names: Vec<&str> = mounts.iter().map(|mount| mount.name.as_str()).collect();
-            let _ = writeln!(
-                text,
-                "# {column}  which {does} in this row: {}",
-                escape_invisible(&names.join(", "))
-            );
+            let _ = writeln!(text, "# {column}  which {does} in this row: {}", escape_invisible(&names.join(", ")));
         }
     }
     text.push_str(
@@ -62,17 +58,15 @@ pub fn template(robot: &Robot, kind: SessionKind) -> Result<String> {
             "#   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
         );
     }
-    for name in
-        kind.quantities().iter().filter(|it| !it.is_of_pose()).map(|it| (it.name(), it.unit().symbol()))
-    {
+    for name in kind.quantities().iter().filter(|it| !it.is_of_pose()).map(|it| (it.name(), it.unit().symbol())) {
         let column = format!("sigma_{}[{}]", name.0, name.1);
-        let _ = writeln!(
-            text,
-            "#   {column:<20} standard deviation of its numbers, if it is known [default: estimated]"
-        );
+        let _ =
+            writeln!(text, "#   {column:<20} standard deviation of its numbers, if it is known [default: estimated]");
     }
     if kind.quantities().contains(&Quantity::Rotation) {
-        text.push_str("#   sigma_rotation[deg]  standard deviation of the rotation about each axis [default: estimated]\n");
+        text.push_str(
+            "#   sigma_rotation[deg]  standard deviation of the rotation about each axis [default: estimated]\n",
+        );
     }
     Ok(format!("{text}{columns}\n"))
 }

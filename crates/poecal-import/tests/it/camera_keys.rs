@@ -83,9 +83,7 @@ fn keys_that_scale_or_shift_are_refused_and_others_named() {
     for (name, text) in [
         (
             "neutral.yaml",
-            camera_info(
-                "image_scale: 1.0\ncrop_x: 0\nflip: false\ncalibration_time: today\nrms_error: 0.3\n",
-            ),
+            camera_info("image_scale: 1.0\ncrop_x: 0\nflip: false\ncalibration_time: today\nrms_error: 0.3\n"),
         ),
         ("neutral.csv", csv("crop_x", "0")),
     ] {
@@ -116,17 +114,9 @@ fn corners_outside_the_pictures_of_the_lens_are_refused_with_how_the_sizes_are_r
         ReadOptions { cameras: vec![Camera::new(camera.name.clone(), lens)], ..session.options.clone() }
     };
     assert!(session.read(&files, &with([1920, 1200])).is_ok());
-    session.fails(
-        &files,
-        &with([960, 600]),
-        &["outside the 960 × 600 pixels", "2 times as large in both directions"],
-    );
+    session.fails(&files, &with([960, 600]), &["outside the 960 × 600 pixels", "2 times as large in both directions"]);
     session.fails(&files, &with([1920, 700]), &["outside the 1920 × 700 pixels", "cropped pictures"]);
-    session.fails(
-        &files,
-        &with([1200, 1920]),
-        &["outside the 1200 × 1920 pixels", "width and height are exchanged"],
-    );
+    session.fails(&files, &with([1200, 1920]), &["outside the 1200 × 1920 pixels", "width and height are exchanged"]);
     let found = session.read(&files, &with([3840, 2400])).unwrap();
     let is_quarter = |it: &String| it.contains("those of pictures of a half of the size");
     println!("{:?}", found.warnings);

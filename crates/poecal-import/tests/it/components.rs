@@ -52,10 +52,7 @@ fn rows_without_some_components_find_the_robot() {
         let found = fit(&made.nominal, &with_components(&made.data, measured));
         let held_out = found.accuracy.held_out.as_ref().unwrap().calibrated.position_mm().max;
         let rank_found = found.identifiability.rank;
-        println!(
-            "{name}: held out {held_out:e} mm, rank {rank_found} of {}",
-            found.identifiability.parameters
-        );
+        println!("{name}: held out {held_out:e} mm, rank {rank_found} of {}", found.identifiability.parameters);
         assert!(held_out < 1e-6, "{name}");
         // The elbow's tip is on its last axis: one unknown is that of the axis' tilt about it.
         assert_eq!(rank_found + 3, rank, "{name}");
@@ -78,8 +75,7 @@ fn the_cost_is_that_of_the_covariance() {
     let estimate = poecal_fit::state::nominal_estimate(&made.nominal, &data);
     let errors = session.errors(&data.all_rows(), &estimate);
     let inverse = covariance.try_inverse().unwrap();
-    let expected: f64 =
-        errors.iter().map(|error| 0.5 * error.position_m().dot(&(inverse * error.position_m()))).sum();
+    let expected: f64 = errors.iter().map(|error| 0.5 * error.position_m().dot(&(inverse * error.position_m()))).sum();
     let problem = Problem::new(session, data.all_rows(), Vec::new(), Noise::new(1.0, 1.0));
     let cost = problem.normal(&estimate).cost;
     println!("{cost:e} {expected:e}");
@@ -105,9 +101,7 @@ fn an_empty_cell_is_a_component_that_was_not_measured() {
         ]
     );
     let strict = ReadOptions { strict: true, ..ReadOptions::default() };
-    assert!(
-        read(&text, &strict).unwrap_err().to_string().contains(":2:17: found an empty cell in column `y`")
-    );
+    assert!(read(&text, &strict).unwrap_err().to_string().contains(":2:17: found an empty cell in column `y`"));
 }
 
 #[test]
@@ -152,8 +146,7 @@ fn noise_is_stated_by_component_and_by_expanded_uncertainty() {
 
 #[test]
 fn noise_of_an_instrument_grows_across_its_line_of_sight() {
-    let text =
-        format!("{HEADER},instrument,x[m],y[m],z[m]\n0,1,2,3,4,5,tracker,0,0,4\n0,1,2,3,4,6,arm,0,0,1\n");
+    let text = format!("{HEADER},instrument,x[m],y[m],z[m]\n0,1,2,3,4,5,tracker,0,0,4\n0,1,2,3,4,6,arm,0,0,1\n");
     let of = |noise: &str| {
         let instrument_noise = vec![noise.parse::<InstrumentNoise>()?];
         read(&text, &ReadOptions { instrument_noise, ..ReadOptions::default() })
@@ -188,8 +181,7 @@ fn a_fit_that_knows_the_noise_is_better() {
     let mut ratios = Vec::new();
     for seed in 0..8 {
         let exact = session(120, 40 + seed, 0.0);
-        let noise =
-            Simulation { count: 120, seed: 900 + seed, noise_position_m: 1.0, ..Simulation::default() };
+        let noise = Simulation { count: 120, seed: 900 + seed, noise_position_m: 1.0, ..Simulation::default() };
         // Unit noise of another session, made along and across the line of sight.
         let unit = noise.run(&elbow(), SessionKind::POINT).unwrap();
         let clean = Simulation { noise_position_m: 0.0, ..noise }.run(&elbow(), SessionKind::POINT).unwrap();
@@ -204,10 +196,9 @@ fn a_fit_that_knows_the_noise_is_better() {
             alike.observations[row].measurement = seen;
             known.state_noise(row, NoiseShape::from_sight(&sight, along, across));
         }
-        let further =
-            Simulation { count: 200, seed: 40 + seed, noise_position_m: 0.0, ..Simulation::default() }
-                .held_out(&exact, SessionKind::POINT, 200)
-                .unwrap();
+        let further = Simulation { count: 200, seed: 40 + seed, noise_position_m: 0.0, ..Simulation::default() }
+            .held_out(&exact, SessionKind::POINT, 200)
+            .unwrap();
         let error = |data: &Dataset| {
             let found = fit(&exact.nominal, data);
             let packed = PackedValues::from_dataset(&exact.nominal, &further);

@@ -25,10 +25,8 @@ fn readings(name: &str, text: &str) -> Result<Vec<f64>, String> {
 }
 
 fn are_readings(name: &str, found: &[f64], data: &Dataset) {
-    let expected: Vec<f64> = (0..data.len())
-        .flat_map(|row| degrees(data, row))
-        .map(|it| it.parse::<f64>().unwrap().to_radians())
-        .collect();
+    let expected: Vec<f64> =
+        (0..data.len()).flat_map(|row| degrees(data, row)).map(|it| it.parse::<f64>().unwrap().to_radians()).collect();
     assert_eq!(found.len(), expected.len(), "{name}");
     for (own, expected) in found.iter().zip(&expected) {
         assert!((own - expected).abs() < 1e-9, "{name}: {own} {expected}");
@@ -69,8 +67,7 @@ fn lists_of_controllers_have_the_readings_of_a_plain_table() {
             4_208_163_634_u64 + 12 * k as u64
         )
     });
-    let letters =
-        "S[deg],L[deg],U[deg],R[deg],B[deg],T[deg]\n".to_owned() + &each(&|_, it| it.join(",") + "\n");
+    let letters = "S[deg],L[deg],U[deg],R[deg],B[deg],T[deg]\n".to_owned() + &each(&|_, it| it.join(",") + "\n");
     let header = |name: &dyn Fn(usize) -> String| (1..=6).map(name).collect::<Vec<_>>().join(";") + "\n";
     let rows = each(&|_, it| it.join(";") + "\n");
     for (name, text) in [
@@ -160,8 +157,7 @@ fn external_axes_are_the_slides_wherever_they_stand() {
     let mapping = ColumnMap::parse(&format!("[joints]\nrail = \"EXT1\"\n{columns}"), "columns.toml").unwrap();
     let options = ReadOptions { mapping: Some(mapping), ..ReadOptions::default() };
     let own = read_joints(folder.write("posreg.va", &swapped), &on_a_rail(true), &options).unwrap().readings;
-    let expected =
-        [0.1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|it: f64| if it < 0.5 { it } else { it.to_radians() });
+    let expected = [0.1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|it: f64| if it < 0.5 { it } else { it.to_radians() });
     assert!(own.iter().zip(expected).all(|it| (it.0 - it.1).abs() < 1e-12), "{own:?}");
     let turned = fanuc.replace("100.0 mm", "100.0 deg");
     let error = found(&on_a_rail(true), "posreg.va", &turned).unwrap_err();
@@ -176,9 +172,8 @@ fn lists_that_are_cut_off_are_refused() {
             "<Database xmlns=\"http://www.staubli.com/robotics/VAL3/Data/2\">\n<Data name=\"a\" type=\"jointRx\">\n{values}"
         )
     };
-    let whole = staubli(
-        "<Value key=\"0\" j1=\"1\" j2=\"2\" j3=\"3\" j4=\"4\" j6=\"6\" />\n<Value key=\"1\" j5=\"5\" />\n",
-    );
+    let whole =
+        staubli("<Value key=\"0\" j1=\"1\" j2=\"2\" j3=\"3\" j4=\"4\" j6=\"6\" />\n<Value key=\"1\" j5=\"5\" />\n");
     assert_eq!(readings("a.dtx", &whole).unwrap()[4], 0.0);
     for (name, text, part) in [
         ("p.va", fanuc.to_owned(), "p.va:4: found J6 of `P` without its unit"),
@@ -196,18 +191,15 @@ fn counts_of_an_encoder_are_named_with_their_factor() {
     let rows: String = (0..data.len())
         .map(|row| {
             let turn = |it: &f64| it.to_degrees() - 360.0 * (it.to_degrees() / 360.0).round();
-            let counts =
-                data.readings(row).iter().map(|it| format!("{:.0}", 2048.0 + turn(it) * 4095.0 / 360.0));
+            let counts = data.readings(row).iter().map(|it| format!("{:.0}", 2048.0 + turn(it) * 4095.0 / 360.0));
             counts.collect::<Vec<_>>().join(",") + "\n"
         })
         .collect();
-    let error =
-        readings("counts.csv", &format!("{}\n{rows}", elbow().joint_reading_names().join(","))).unwrap_err();
+    let error = readings("counts.csv", &format!("{}\n{rows}", elbow().joint_reading_names().join(","))).unwrap_err();
     println!("{error}");
-    for part in [
-        "counts of an encoder, 4096 a turn with the zero at 2048",
-        "= 0.087890625 }, unit = \"deg\", offset = -180 }`",
-    ] {
+    for part in
+        ["counts of an encoder, 4096 a turn with the zero at 2048", "= 0.087890625 }, unit = \"deg\", offset = -180 }`"]
+    {
         assert!(error.contains(part), "{error}");
     }
 }
@@ -216,8 +208,7 @@ fn join_files(joints: &str, seen: &str) -> MeasurementFile {
     let folder = Folder::new();
     let paths = [folder.write("joints.csv", joints), folder.write("vicon.csv", seen)];
     let options = ReadOptions { join: Some(Join::Rows), ..ReadOptions::default() };
-    read(&paths, &elbow(), &options)
-        .unwrap_or_else(|error| panic!("{}", folder.without_path(&error.to_string())))
+    read(&paths, &elbow(), &options).unwrap_or_else(|error| panic!("{}", folder.without_path(&error.to_string())))
 }
 
 #[test]
@@ -228,14 +219,12 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
     let poses: Vec<_> = data.observations.iter().map(|it| it.measurement.pose()).collect();
     let mut segments = "Segments\r\n100\r\n,,Tool:Tool,,,,,,Base:Base,,,,,\r\nFrame,Sub Frame,RX,RY,RZ,TX,TY,TZ,RX,RY,RZ,TX,TY,TZ\r\n,,rad,rad,rad,mm,mm,mm,rad,rad,rad,mm,mm,mm\r\n".to_owned();
     let mut markers =
-        "Trajectories\n100\n,,Tool:M1,,,Tool:M2,,\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,mm,mm,mm\n"
-            .to_owned();
+        "Trajectories\n100\n,,Tool:M1,,,Tool:M2,,\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,mm,mm,mm\n".to_owned();
     let cells = |numbers: &[f64]| numbers.iter().map(|it| format!("{it:?}")).collect::<Vec<_>>().join(",");
     for (row, pose) in (1..).zip(&poses) {
         let turn = rotation::log(&pose.rotation);
         let place = pose.translation * 1e3;
-        segments +=
-            &format!("{row},0,{},{},0,0,0,10,20,30\r\n", cells(turn.as_slice()), cells(place.as_slice()));
+        segments += &format!("{row},0,{},{},0,0,0,10,20,30\r\n", cells(turn.as_slice()), cells(place.as_slice()));
         let other = (pose.translation + pose.rotation * Vector3::new(0.1, 0.0, 0.0)) * 1e3;
         markers += &format!("{row},0,{},{}\n", cells(place.as_slice()), cells(other.as_slice()));
     }
@@ -250,11 +239,7 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
         assert!(off < 1e-9, "{off}");
     }
     let both = join_files(&joints, &format!("{segments}\r\n{markers}"));
-    assert!(
-        both.notes.iter().any(|it| it.contains("read Segments, left out Trajectories")),
-        "{:?}",
-        both.notes
-    );
+    assert!(both.notes.iter().any(|it| it.contains("read Segments, left out Trajectories")), "{:?}", both.notes);
     let folder = Folder::new();
     let mixed = markers.replace("mm,mm,mm,mm\n", "mm,mm,mm,mm/s\n");
     let paths = [folder.write("joints.csv", &joints), folder.write("vicon.csv", &mixed)];

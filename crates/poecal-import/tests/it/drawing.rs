@@ -9,9 +9,7 @@ use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session, nomi
 use poecal_formats::robot_toml;
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::{Robot, Tolerance};
-use poecal_model::simulate::{
-    SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis,
-};
+use poecal_model::simulate::{SessionKind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use poecal_numerics::solve::NormalEquations;
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
@@ -51,10 +49,8 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
             let data = two_targets(&robot);
             let packed = PackedValues::from_dataset(&robot, &data);
             let session = Session::new(&robot, &data, &packed, base_free);
-            let targets = [
-                Parameter::TargetPlace(TargetPlace { target: 0 }),
-                Parameter::TargetFrame(TargetFrame::new(1)),
-            ];
+            let targets =
+                [Parameter::TargetPlace(TargetPlace { target: 0 }), Parameter::TargetFrame(TargetFrame::new(1))];
             let layout = Layout::new(screws(&robot).into_iter().chain(targets).collect(), 0.4);
             let prior = Prior::from_session(&session, Tolerance { angle_rad: 0.01, length_m: 0.004 });
             let nominal = nominal_estimate(&robot, &data);
@@ -83,15 +79,12 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
             for i in 0..n {
                 for j in i..n {
                     let cost = |a: f64, b: f64| along(&nominal, &[(i, a * STEP), (j, b * STEP)]);
-                    let second = (cost(1.0, 1.0) - cost(1.0, -1.0) - cost(-1.0, 1.0) + cost(-1.0, -1.0))
-                        / (4.0 * STEP * STEP);
+                    let second =
+                        (cost(1.0, 1.0) - cost(1.0, -1.0) - cost(-1.0, 1.0) + cost(-1.0, -1.0)) / (4.0 * STEP * STEP);
                     worst[1] = worst[1].max((second - at_nominal.gram[i * n + j]).abs() / scale);
                 }
             }
-            println!(
-                "{} base {base_free}: gradient {:.1e}, information {:.1e}",
-                robot.name, worst[0], worst[1]
-            );
+            println!("{} base {base_free}: gradient {:.1e}, information {:.1e}", robot.name, worst[0], worst[1]);
             // Bounds of rounding of differences of a cost of some thousand, and of their third derivatives.
             assert!(worst[0] < 1e-6 && worst[1] < 1e-5);
         }
@@ -113,13 +106,7 @@ fn moving_the_base_costs_nothing_where_it_is_a_choice() {
 }
 
 /// A session of configurations: points or poses of an actual robot, observed by a device at the base.
-fn observe_robot(
-    robot: &Robot,
-    actual: &Robot,
-    kind: SessionKind,
-    readings: &[Vec<f64>],
-    seed: u64,
-) -> Dataset {
+fn observe_robot(robot: &Robot, actual: &Robot, kind: SessionKind, readings: &[Vec<f64>], seed: u64) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let mut data = Dataset::new(robot.reading_names());
     for (recorded, real) in readings.iter().map(|row| (row, row)) {
@@ -240,8 +227,7 @@ fn an_axis_through_the_target_stays_at_the_drawing() {
             };
             let truth = simulation.perturb(&robot, &mut ChaCha8Rng::seed_from_u64(11));
             let readings = configurations(&robot, 60, 3, |_, _| {});
-            let found =
-                calibrate_rows(&robot, &observe_robot(&robot, &truth, SessionKind::POINT, &readings, seed));
+            let found = calibrate_rows(&robot, &observe_robot(&robot, &truth, SessionKind::POINT, &readings, seed));
             (
                 found.trust.joints[5].tilt_rad.to_degrees(),
                 found.identifiability.rank,
@@ -275,19 +261,14 @@ fn few_poses_of_poor_orientation_are_never_worse_than_registered() {
             };
             let readings = configurations(&robot, count, seed, keep);
             let others = configurations(&robot, 100, seed ^ 0x99, keep);
-            let simulation = Simulation {
-                error_rotation_rad: 0.2f64.to_radians(),
-                error_position_m: 1e-3,
-                ..Simulation::default()
-            };
+            let simulation =
+                Simulation { error_rotation_rad: 0.2f64.to_radians(), error_position_m: 1e-3, ..Simulation::default() };
             let truth = simulation.perturb(&robot, &mut generator);
-            let found =
-                calibrate_rows(&robot, &observe_robot(&robot, &truth, SessionKind::POSE, &readings, seed));
+            let found = calibrate_rows(&robot, &observe_robot(&robot, &truth, SessionKind::POSE, &readings, seed));
             let registered = missed_in(&robot, &truth, &found.models.registered, &others);
             let calibrated = missed_in(&robot, &truth, &found.models.calibrated, &others);
-            (calibrated > registered).then(|| {
-                format!("{seed}: {count} poses, {:.3} against {:.3} mm", 1e3 * calibrated, 1e3 * registered)
-            })
+            (calibrated > registered)
+                .then(|| format!("{seed}: {count} poses, {:.3} against {:.3} mm", 1e3 * calibrated, 1e3 * registered))
         })
         .collect();
     println!("{} of {} worse: {worse:#?}", worse.len(), sessions.count);
@@ -316,10 +297,8 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
                 })
                 .collect();
             let kind = if seed % 4 < 2 { SessionKind::POSE } else { SessionKind::POINT };
-            let found = calibrate_rows(
-                &robot,
-                &observe_robot(&robot, &perturb_robot(&robot, seed), kind, &readings, seed),
-            );
+            let found =
+                calibrate_rows(&robot, &observe_robot(&robot, &perturb_robot(&robot, seed), kind, &readings, seed));
             println!(
                 "{seed}: {} iterations, {:?}, rank {}",
                 found.solver.iterations, found.solver.termination, found.identifiability.rank
@@ -369,13 +348,8 @@ fn what_the_data_tell_is_not_touched() {
         // In one session the ratio differs by some per cent.
         assert!(sums[0] < (1.01 + sessions.tolerance_factor(0.05)) * sums[1]);
     }
-    let far = Simulation {
-        count: 60,
-        seed: 3,
-        error_rotation_rad: 0.3,
-        error_position_m: 0.06,
-        ..Simulation::default()
-    };
+    let far =
+        Simulation { count: 60, seed: 3, error_rotation_rad: 0.3, error_position_m: 0.06, ..Simulation::default() };
     let made = far.run(&robot, SessionKind::POSE).unwrap();
     let found = calibrate(&robot, &made.data, &geometry()).unwrap();
     let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
@@ -394,10 +368,7 @@ fn a_joint_may_state_its_own_tolerance() {
     let robot = robot_toml::parse(&model(", tolerance = { angle = 2, length = 20 }"), "r.toml").unwrap();
     let found = robot.joints[0].tolerance.unwrap();
     assert!((found.angle_rad - 2f64.to_radians()).abs() < 1e-15 && (found.length_m - 0.02).abs() < 1e-15);
-    assert_eq!(
-        robot_toml::parse(&robot_toml::write(&robot), "r.toml").unwrap().joints[0].tolerance,
-        Some(found)
-    );
+    assert_eq!(robot_toml::parse(&robot_toml::write(&robot), "r.toml").unwrap().joints[0].tolerance, Some(found));
     assert_eq!(robot_toml::parse(&model(""), "r.toml").unwrap().joints[0].tolerance, None);
     let error = robot_toml::parse(&model(", tolerance = { angle = 0, length = 20 }"), "r.toml").unwrap_err();
     println!("{error}");

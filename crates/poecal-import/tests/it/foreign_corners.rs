@@ -32,15 +32,11 @@ impl Session {
         };
         let board = read_boards(BOARD).unwrap().remove(0);
         let still = CommonError { shift_m: 0.0, turn_rad: 0.0, ..CommonError::default() };
-        let usual =
-            PictureSimulation { common: still, ..PictureSimulation::with_usual_camera(session, true) };
+        let usual = PictureSimulation { common: still, ..PictureSimulation::with_usual_camera(session, true) };
         let lens = usual.lens;
         let made = usual.with_board_and_lens(board.clone(), lens).run(&elbow()).unwrap();
-        let options = ReadOptions {
-            cameras: made.data.pictures.cameras.clone(),
-            boards: vec![board],
-            ..ReadOptions::default()
-        };
+        let options =
+            ReadOptions { cameras: made.data.pictures.cameras.clone(), boards: vec![board], ..ReadOptions::default() };
         Session { data: made.data, robot: made.nominal, options }
     }
 
@@ -59,9 +55,9 @@ impl Session {
 
     /// A table of all corners.
     pub(crate) fn corners(&self, header: &str, row: impl Fn(usize, &Corner) -> String) -> String {
-        let rows = self.pictures().flat_map(|(at, picture)| {
-            picture.corners.iter().map(|corner| row(at, corner)).collect::<Vec<_>>()
-        });
+        let rows = self
+            .pictures()
+            .flat_map(|(at, picture)| picture.corners.iter().map(|corner| row(at, corner)).collect::<Vec<_>>());
         rows.fold(format!("{header}\n"), |text, row| text + &row + "\n")
     }
 
@@ -80,11 +76,7 @@ impl Session {
         [point.x, point.y, point.z].map(|it| format!("{:.3}", 1e3 * it))
     }
 
-    pub(crate) fn read(
-        &self,
-        files: &[(&str, &str)],
-        options: &ReadOptions,
-    ) -> Result<MeasurementFile, String> {
+    pub(crate) fn read(&self, files: &[(&str, &str)], options: &ReadOptions) -> Result<MeasurementFile, String> {
         let folder = Folder::new();
         let paths: Vec<_> = files.iter().map(|(name, text)| folder.write(name, text)).collect();
         let file = read(&paths, &self.robot, options);
@@ -173,10 +165,7 @@ fn tables_of_other_programs_are_the_same_session() {
     let halcon = |at: usize, it: &Corner| format!("{at:03}.png,{},{},{}", it.point + 1, v(it), u(it));
     let found = read_as("Picture,Mark,Row,Column", &halcon, &session.options);
     says(&found, "took `Column` for u, `Row` for v, `Mark` for target, `Picture` for image");
-    says(
-        &found,
-        "took the numbers of corners for the points of the board, as counted from 1: `1` is `corner0`",
-    );
+    says(&found, "took the numbers of corners for the points of the board, as counted from 1: `1` is `corner0`");
     assert_same(&session, "HALCON, from 1", &found, 0.0);
     let columns = &found.understood[0].columns;
     let of = |name: &str| columns.iter().find(|it| it.name == name).and_then(|it| it.column.clone());
@@ -199,28 +188,18 @@ fn tables_of_other_programs_are_the_same_session() {
         }
     }
 
-    for (names, factor) in [
-        ("X[mm],Y[mm],Z[mm]", 1.0),
-        ("obj_x,obj_y,obj_z", 1e-3),
-        ("object_x_mm,object_y_mm,object_z_mm", 1.0),
-    ] {
+    for (names, factor) in
+        [("X[mm],Y[mm],Z[mm]", 1.0), ("obj_x,obj_y,obj_z", 1e-3), ("object_x_mm,object_y_mm,object_z_mm", 1.0)]
+    {
         let row = |at: usize, it: &Corner| {
             let place = session.place_mm(it).map(|it| (it.parse::<f64>().unwrap() * factor).to_string());
             format!("{at:03}.png,{},{},{}", place.join(","), u(it), v(it))
         };
         let header = format!("image_id,{names},x_px,y_px");
         let found = read_as(&header, &row, &session.without_boards());
-        says(
-            &found,
-            "took the places of the corners for the board `board` of 20 points, 160.0 x 120.0 x 0.0 mm",
-        );
+        says(&found, "took the places of the corners for the board `board` of 20 points, 160.0 x 120.0 x 0.0 mm");
         assert_same(&session, &format!("places on the board, {names}"), &found, 0.0);
-        assert_same(
-            &session,
-            "the same beside a stated board",
-            &read_as(&header, &row, &session.options),
-            0.0,
-        );
+        assert_same(&session, "the same beside a stated board", &read_as(&header, &row, &session.options), 0.0);
     }
 }
 
@@ -255,12 +234,8 @@ fn pictures_with_the_same_number_are_the_same() {
         |at| format!("IMG_{at:04}.jpg"),
     ] {
         let joints = session.joints("file", name);
-        let found =
-            session.read(&[("corners.csv", &corners), ("joints.csv", &joints)], &session.options).unwrap();
-        says(
-            &found,
-            "took the pictures whose names end in the same number for the same, 20 of 20: `image-0.png` is",
-        );
+        let found = session.read(&[("corners.csv", &corners), ("joints.csv", &joints)], &session.options).unwrap();
+        says(&found, "took the pictures whose names end in the same number for the same, 20 of 20: `image-0.png` is");
         assert_same(&session, &name(7), &found, 0.0);
     }
     // Numbers that two pictures share join none.
@@ -268,14 +243,8 @@ fn pictures_with_the_same_number_are_the_same() {
     let joints = session.joints("image", |at| format!("configuration_{at}"));
     let found = session.read(&[("corners.csv", &twice), ("joints.csv", &joints)], &session.options).unwrap();
     assert_eq!(found.data.len(), 18);
-    says(
-        &found,
-        "left out the pictures that have corners and no joint readings: 2 (image-4.png, other-4.png)",
-    );
-    says(
-        &found,
-        "left out the pictures that have joint readings and no corners: 2 (configuration_3, configuration_4)",
-    );
+    says(&found, "left out the pictures that have corners and no joint readings: 2 (image-4.png, other-4.png)");
+    says(&found, "left out the pictures that have joint readings and no corners: 2 (configuration_3, configuration_4)");
     // Names precede numbers.
     let mixed = session.joints("image", |at| match at {
         0 => "image-1.png".to_owned(),
@@ -302,9 +271,7 @@ fn mistakes_in_tables_are_named() {
         session.fails(&[("corners.csv", &corners), ("joints.csv", &joints)], &session.options, parts);
     };
     let numbered = |by: u32| {
-        move |at: usize, it: &Corner| {
-            format!("{at:03}.png,{},{:.4},{:.4}", it.point + by, it.pixel.x, it.pixel.y)
-        }
+        move |at: usize, it: &Corner| format!("{at:03}.png,{},{:.4},{:.4}", it.point + by, it.pixel.x, it.pixel.y)
     };
     fails(
         "image,id,px,py",
@@ -370,22 +337,19 @@ fn positions_are_no_pixels() {
     let zeros = session.readings(0).join(",");
     let text = |columns: &str, cells: &str| format!("{names},{columns}\n{zeros},{cells}\n");
     let options = ReadOptions::default();
-    for (columns, cells) in
-        [("x,y,z,row,column", "0.8,0.1,0.3,1,2"), ("x[mm],y[mm],z[mm],id,file", "800,100,300,1,a")]
+    for (columns, cells) in [("x,y,z,row,column", "0.8,0.1,0.3,1,2"), ("x[mm],y[mm],z[mm],id,file", "800,100,300,1,a")]
     {
         let file = parse(&text(columns, cells), "t.csv", &session.robot, &options).unwrap();
         assert_eq!((file.understood[0].points, file.data.pictures.all.len()), (1, 0), "{columns}");
     }
     // The columns px, py and pz are a vector.
-    let error =
-        parse(&text("px,py,pz", "0.8,0.1,0.3"), "t.csv", &session.robot, &options).unwrap_err().to_string();
+    let error = parse(&text("px,py,pz", "0.8,0.1,0.3"), "t.csv", &session.robot, &options).unwrap_err().to_string();
     assert!(error.contains("found no column `x`"), "{error}");
     let folder = Folder::new();
     let map = folder.write("map.toml", "position = { columns = [\"px\", \"py\", \"h\"] }\n");
     let options = ReadOptions { mapping: Some(ColumnMap::read(&map).unwrap()), ..options };
     assert_eq!(
-        parse(&text("px,py,h", "0.8,0.1,0.3"), "t.csv", &session.robot, &options).unwrap().understood[0]
-            .points,
+        parse(&text("px,py,h", "0.8,0.1,0.3"), "t.csv", &session.robot, &options).unwrap().understood[0].points,
         1
     );
 }

@@ -12,9 +12,8 @@ fn message(session: &Session, (at, picture): (usize, &Picture), camera: bool) ->
     let feature = |frame: &str, [x, y]: [String; 2]| {
         format!("{{\"header\":{{\"frame_id\":\"{frame}\"}},\"point\":{{\"x\":{x},\"y\":{y},\"z\":0.0}}}}")
     };
-    let own = |corner: &Corner| {
-        feature("optical", [format!("{:.4}", corner.pixel.x), format!("{:.4}", corner.pixel.y)])
-    };
+    let own =
+        |corner: &Corner| feature("optical", [format!("{:.4}", corner.pixel.x), format!("{:.4}", corner.pixel.y)]);
     let point = |corner: &Corner| {
         let [x, y, _] = session.place_mm(corner).map(|it| format!("{:?}", 1e-3 * it.parse::<f64>().unwrap()));
         feature("checkerboard", [x, y])
@@ -29,11 +28,8 @@ fn message(session: &Session, (at, picture): (usize, &Picture), camera: bool) ->
         Distortion::Fisheye(_) => unreachable!(),
     };
     let info = match camera {
-        true => format!(
-            "{{\"width\":1920,\"height\":1200,\"distortion_model\":\"plumb_bob\",\"d\":{d},\"k\":{k}}}"
-        ),
-        false => "{\"width\":0,\"height\":0,\"distortion_model\":\"\",\"d\":[],\"k\":[0,0,0,0,0,0,0,0,0]}"
-            .to_owned(),
+        true => format!("{{\"width\":1920,\"height\":1200,\"distortion_model\":\"plumb_bob\",\"d\":{d},\"k\":{k}}}"),
+        false => "{\"width\":0,\"height\":0,\"distortion_model\":\"\",\"d\":[],\"k\":[0,0,0,0,0,0,0,0,0]}".to_owned(),
     };
     let list = |all: Vec<String>| all.join(",");
     format!(
@@ -50,8 +46,7 @@ fn message(session: &Session, (at, picture): (usize, &Picture), camera: bool) ->
 #[test]
 fn messages_of_robot_calibration_are_the_same_session() {
     let session = Session::new();
-    let all =
-        |camera| -> Vec<String> { session.pictures().map(|it| message(&session, it, camera)).collect() };
+    let all = |camera| -> Vec<String> { session.pictures().map(|it| message(&session, it, camera)).collect() };
     // JSON is YAML too.
     let forms = [
         ("lines.jsonl", all(true).join("\n")),
@@ -95,24 +90,15 @@ fn mistakes_in_messages_are_named() {
             text.replacen(&joint, "\"other\"", 1),
             &["m.jsonl:1:1: found no joint `", "in `joint_states` (head_pan, "][..],
         ),
-        (
-            good[..3].join("\n") + "\n" + &good[3].replace(&joint, "\"other\""),
-            &["m.jsonl:4:1: found no joint `"],
-        ),
-        (
-            text.replace("\"z\":0.0", "\"z\":0.7"),
-            &["of the sensor `eye`, as a 3-D camera sees it, expected pixels"],
-        ),
+        (good[..3].join("\n") + "\n" + &good[3].replace(&joint, "\"other\""), &["m.jsonl:4:1: found no joint `"]),
+        (text.replace("\"z\":0.0", "\"z\":0.7"), &["of the sensor `eye`, as a 3-D camera sees it, expected pixels"]),
         (text.replacen("\"position\":[0.5,", "\"position\":[", 1), &["found 7 names and 6 positions"]),
         (text.replacen("\"x\":", "\"w\":", 1), &["m.jsonl:1:", "without `x`"]),
         (text.replacen("\"sensor_name\":\"eye\",", "", 1), &["without `sensor_name`"]),
         (text.replacen("[0.5,", "[NaN,", 1), &["m.jsonl:1:"]),
         (text.replacen("1920", "1921", 1), &["found another `camera_info` of `eye`"]),
         (text.replace("\"arm\"", "\"arm\",\"features\":[]},{\"sensor_name\":\"none\""), &[]),
-        (
-            text.replacen("\"k\":[", "\"k\":[1,", 1),
-            &["found 10 numbers of the camera's matrix `K`, expected 9"],
-        ),
+        (text.replacen("\"k\":[", "\"k\":[1,", 1), &["found 10 numbers of the camera's matrix `K`, expected 9"]),
         ("[\"joint_states\"]".to_owned(), &["found `joint_states`, expected messages of robot_calibration"]),
         ("{\"joint_states\":1".to_owned(), &["m.jsonl:1:", "expected messages of robot_calibration"]),
     ] {
@@ -123,11 +109,12 @@ fn mistakes_in_messages_are_named() {
         }
     }
     // A 3-D camera whose lens is not stated, and no board.
-    let dots = |at: usize| {
-        format!("{{\"sensor_name\":\"depth\",\"features\":[{}]}},", (0..5).map(|k| {
+    let dots =
+        |at: usize| {
+            format!("{{\"sensor_name\":\"depth\",\"features\":[{}]}},", (0..5).map(|k| {
         format!("{{\"header\":{{\"frame_id\":\"optical\"}},\"point\":{{\"x\":0.{k}{at},\"y\":0.1,\"z\":0.9}}}}")
     }).collect::<Vec<_>>().join(","))
-    };
+        };
     let deep: Vec<String> = good
         .iter()
         .enumerate()
@@ -138,10 +125,8 @@ fn mistakes_in_messages_are_named() {
         &none,
         &["of the sensor `depth` in metres that move in its frame `optical`"],
     );
-    let alone: Vec<String> = good
-        .iter()
-        .map(|text| text.split(",{\"sensor_name\":\"arm\"").next().unwrap().to_owned() + "]}")
-        .collect();
+    let alone: Vec<String> =
+        good.iter().map(|text| text.split(",{\"sensor_name\":\"arm\"").next().unwrap().to_owned() + "]}").collect();
     session.fails(
         &[("m.json", &alone.join("\n"))],
         &none,
@@ -277,10 +262,7 @@ fn boards_and_lenses_of_other_programs_are_read() {
             "target_type: checkerboard\ntargetCols: 1\ntargetRows: 7\nrowSpacingMeters: 0.06\ncolSpacingMeters: 0.06\n",
             "found a board of 2 × 8 squares",
         ),
-        (
-            "target_finder:\n  type: Aruco\n",
-            ":2: found `Aruco` for `type`, expected ModifiedCircleGridTargetFinder",
-        ),
+        ("target_finder:\n  type: Aruco\n", ":2: found `Aruco` for `type`, expected ModifiedCircleGridTargetFinder"),
         (&charuco("  dictionary: 99\n"), "found `99` for `dictionary`"),
         ("a: [", "found broken YAML"),
     ] {
@@ -294,10 +276,7 @@ fn boards_and_lenses_of_other_programs_are_read() {
     assert_eq!((camera.lens.focal_px, camera.lens.centre_px), ([550.0, 551.0], [320.0, 240.0]));
     let half = folder.write("half.yaml", "intrinsics:\n  fx: 550.0\n");
     assert!(
-        read_cameras(half.to_str().unwrap())
-            .unwrap_err()
-            .to_string()
-            .contains("found 0 numbers of `camera_matrix`")
+        read_cameras(half.to_str().unwrap()).unwrap_err().to_string().contains("found 0 numbers of `camera_matrix`")
     );
 }
 
@@ -309,9 +288,5 @@ fn pictures_with_poses_are_refused_with_what_is_missing() {
         &session.options,
         &["cal_data.yaml: found pictures with poses", "expected the joint readings of each picture"],
     );
-    session.fails(
-        &[("other.yaml", "a: 1\n")],
-        &session.options,
-        &["other.yaml: found YAML without `joint_states`"],
-    );
+    session.fails(&[("other.yaml", "a: 1\n")], &session.options, &["other.yaml: found YAML without `joint_states`"]);
 }

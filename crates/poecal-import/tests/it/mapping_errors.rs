@@ -7,10 +7,7 @@ use poecal_testing::sessions::lifting_robot;
 /// Text of `map.toml`, and the whole message when a good file is read with it.
 const MAPPINGS: &[(&str, &str)] = &[
     ("separator = \"|\"", "map.toml:1:13: found the separator `|`, expected `,`, `;`, `tab` or `whitespace`"),
-    (
-        "\u{feff}separator = \"|\"",
-        "map.toml:1:13: found the separator `|`, expected `,`, `;`, `tab` or `whitespace`",
-    ),
+    ("\u{feff}separator = \"|\"", "map.toml:1:13: found the separator `|`, expected `,`, `;`, `tab` or `whitespace`"),
     ("decimal = \"'\"", "map.toml:1:11: found the decimal sign `'`, expected `.` or `,`"),
     (
         "\n\nseparater = \";\"",
@@ -20,10 +17,7 @@ const MAPPINGS: &[(&str, &str)] = &[
         "[position]\nunit = \"furlong\"",
         "map.toml:2:8: found the unit `furlong`, expected a length (m, cm, mm, um, nm, in)",
     ),
-    (
-        "[position]\ncolumns = [\"x\", \"y\"]",
-        "map.toml:2:11: invalid length 2, expected an array of length 3",
-    ),
+    ("[position]\ncolumns = [\"x\", \"y\"]", "map.toml:2:11: invalid length 2, expected an array of length 3"),
     (
         "[joints]\na = { unit = \"grad\" }",
         "map.toml:2:14: found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec",
@@ -134,10 +128,7 @@ const MAPPINGS: &[(&str, &str)] = &[
         "id = \"name\"",
         "points.csv:1: found no column `name`, expected one for the row's id; the columns are id, a, lift, b, x, y, z",
     ),
-    (
-        "joints = { b = { value = 1e30 } }",
-        "map.toml: found the value 1e30 for joint `b`, expected at most 1e6 rad",
-    ),
+    ("joints = { b = { value = 1e30 } }", "map.toml: found the value 1e30 for joint `b`, expected at most 1e6 rad"),
     ("skip_lines = -1", "map.toml:1:14: invalid value: integer `-1`, expected usize"),
     ("a = ", "map.toml:1:5: string values must be quoted, expected literal string"),
 ];

@@ -62,10 +62,7 @@ fn a_mapping_names_columns_units_targets_and_sets() {
     assert_eq!(file.data.readings(0), [PI, 0.25, PI / 2.0]);
     assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
     let row = file.data.observations[0];
-    assert_eq!(
-        (row.stated.get(Quantity::Position), row.set, row.source.line),
-        (Some(5e-5), Some(Set::Fit), 4)
-    );
+    assert_eq!((row.stated.get(Quantity::Position), row.set, row.source.line), (Some(5e-5), Some(Set::Fit), 4));
     assert_eq!(file.data.observations[1].set, Some(Set::HeldOut));
     assert_eq!(file.data.ids, ["7", "8"]);
     assert_eq!(file.data.targets, [Some("smr1".to_owned())]);
@@ -100,18 +97,10 @@ fn a_mapping_reads_several_targets_of_a_row() {
         .observations
         .iter()
         .map(|row| {
-            (
-                row.target,
-                row.source.line,
-                row.measurement.sees_orientation(),
-                row.stated.get(Quantity::Position),
-            )
+            (row.target, row.source.line, row.measurement.sees_orientation(), row.stated.get(Quantity::Position))
         })
         .collect();
-    assert_eq!(
-        rows,
-        [(0, 2, false, Some(5e-5)), (1, 2, true, None), (1, 3, false, None), (1, 5, true, None)]
-    );
+    assert_eq!(rows, [(0, 2, false, Some(5e-5)), (1, 2, true, None), (1, 3, false, None), (1, 5, true, None)]);
     assert_eq!(data.ids, ["1", "1", "2", "4"]);
     assert_eq!(pose(&data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
     assert!((pose(&data, 1).rotation - rotation::about(2, PI)).norm() < ROUNDING);
@@ -134,10 +123,9 @@ fn inverted_poses_are_turned_round() {
 #[test]
 fn a_tracker_file_with_its_own_columns_gives_the_same_rows_as_ours() {
     let angles = [[-90.18_f64, -20.11, -90.16], [12.5, 77.0, 179.2]];
-    let mut raw =
-        "Timestamp;Goal x;J a;J lift;J b;measurement_x;measurement_std_x;measurement_y;measurement_z;\
+    let mut raw = "Timestamp;Goal x;J a;J lift;J b;measurement_x;measurement_std_x;measurement_y;measurement_z;\
                    measurement_rx;measurement_ry;measurement_rz\n"
-            .to_owned();
+        .to_owned();
     let mut ours = "a,lift,b,x[mm],y[mm],z[mm],qx,qy,qz,qw\n".to_owned();
     for (i, [rx, ry, rz]) in angles.into_iter().enumerate() {
         let r = rotation::about(0, rx.to_radians())
@@ -145,8 +133,7 @@ fn a_tracker_file_with_its_own_columns_gives_the_same_rows_as_ours() {
             * rotation::about(2, rz.to_radians());
         let [qx, qy, qz, qw] = Pose::new(r, Vector3::zeros()).quaternion_xyzw();
         ours += &format!("-1.25,0.125,{i},383.97123,-3240.7562,201.5,{qx},{qy},{qz},{qw}\n");
-        let row =
-            format!("2.02011E+13;-0.5;-1.25;0.125;{i};383.97123;0.04;-3240.7562;201.5;{rx};{ry};{rz}\n");
+        let row = format!("2.02011E+13;-0.5;-1.25;0.125;{i};383.97123;0.04;-3240.7562;201.5;{rx};{ry};{rz}\n");
         raw += &row.replace('.', ",");
     }
     let map = r#"
@@ -180,8 +167,7 @@ fn the_published_ur10_series_reads_as_its_copy_in_our_form() {
         let joint = Joint::revolute(&format!("joint{i}"), Screw::revolute(&Vector3::z(), &Vector3::zeros()));
         Joint { limits: Some(JointLimits { lower: -2.0 * PI, upper: 2.0 * PI }), ..joint }
     });
-    let robot =
-        Robot::new("ur10", joints.collect(), Pose::from_translation(Vector3::new(1.2, 0.0, 0.0))).unwrap();
+    let robot = Robot::new("ur10", joints.collect(), Pose::from_translation(Vector3::new(1.2, 0.0, 0.0))).unwrap();
     let map = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/ur10_raw_columns.toml");
     let options = ReadOptions { mapping: Some(ColumnMap::read(map).unwrap()), ..ReadOptions::default() };
     let folder = Path::new(&folder);
@@ -226,10 +212,8 @@ fn columns_of_a_table_without_names_are_named_by_their_numbers() {
         (&["P1".to_owned(), "P2".to_owned()][..], 2)
     );
     // The same for a table with names, one of which is not unique.
-    let file = with_map(
-        "n,x,x,x,a,lift,b\nP1,100,200,300,180,250,90\n",
-        &map.replace("unit = \"rad\"", "unit = \"deg\""),
-    );
+    let file =
+        with_map("n,x,x,x,a,lift,b\nP1,100,200,300,180,250,90\n", &map.replace("unit = \"rad\"", "unit = \"deg\""));
     assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
     let error = ColumnMap::parse("position = { columns = [0, 1, 2] }", "map.toml").unwrap_err().to_string();
     assert!(error.contains("found the column 0, expected its name, or its number from 1"), "{error}");

@@ -12,8 +12,7 @@ const FOREIGN: &str = "no;goal x;goal y;goal z;axis one;axis two;axis three;meas
                        1;1;2;3;90,5;250;-12;1500,5;-20;30;10;20;170\n2;1;2;3;10,5;125;15;1400,5;-25;35;15;25;-170\n";
 /// The same table in our form.
 const OWN: &str = "a[deg],lift[mm],b[deg],x[mm],y[mm],z[mm],p,q,r\n90.5,250,-12,1500.5,-20,30,10,20,170\n10.5,125,15,1400.5,-25,35,15,25,-170\n";
-const OWN_ANGLES: &str =
-    "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"p\", \"q\", \"r\"]\nunit = \"deg\"\n";
+const OWN_ANGLES: &str = "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"p\", \"q\", \"r\"]\nunit = \"deg\"\n";
 
 fn guess(text: &str, chosen: &[(&str, &str)]) -> poecal_numerics::error::Result<ColumnGuess> {
     let folder = Folder::new();
@@ -77,11 +76,7 @@ fn names_of_ours_that_are_not_wanted_are_ignored() {
     let as_it_is = guess(text, &[]).unwrap();
     assert_same(&rows(text, &as_it_is.mapping), &rows(text, ""));
     let points = guess(text, &[("orientation", ""), ("target", "")]).unwrap();
-    assert!(
-        points.mapping.contains("ignore = [\"qx\", \"qy\", \"qz\", \"qw\", \"target\"]"),
-        "{}",
-        points.mapping
-    );
+    assert!(points.mapping.contains("ignore = [\"qx\", \"qy\", \"qz\", \"qw\", \"target\"]"), "{}", points.mapping);
     let data = rows(text, &points.mapping);
     assert!(!data.observations[0].measurement.sees_orientation());
     assert_eq!(data.targets, [None]);
@@ -103,14 +98,12 @@ fn wrong_choices_and_files_that_have_none_get_one_sentence() {
         assert_eq!(error.kind(), ErrorKind::Option);
         error.to_string()
     };
-    assert!(refused(&[("x", "meas_q")]).starts_with(
-        "--column: found no column `meas_q` for `x`, expected one of the file, the nearest is `meas_"
-    ));
-    assert!(refused(&[("w", "meas_x")]).starts_with("--column: found `w`, expected what a column is for"));
     assert!(
-        refused(&[("orientation", "euler")])
-            .starts_with("--column: found the orientation form `euler`, expected")
+        refused(&[("x", "meas_q")])
+            .starts_with("--column: found no column `meas_q` for `x`, expected one of the file, the nearest is `meas_")
     );
+    assert!(refused(&[("w", "meas_x")]).starts_with("--column: found `w`, expected what a column is for"));
+    assert!(refused(&[("orientation", "euler")]).starts_with("--column: found the orientation form `euler`, expected"));
     assert!(refused(&[("unit.position", "deg")]).starts_with("--column: found the unit `deg`"));
     assert!(refused(&[("pose", "inverse")]).contains("expected device_from_target or target_from_device"));
     let motive = "Format Version,1.23,Take Name,a,Capture Frame Rate,100\n\n,Type,Rigid Body\n";

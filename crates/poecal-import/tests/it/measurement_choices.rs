@@ -50,11 +50,7 @@ fn a_joint_may_have_the_name_of_a_position_column() {
     for name in [&mut joint.name, &mut joint.reading.name] {
         "x".clone_into(name);
     }
-    let message = |text: &str, options: &ReadOptions| match read(
-        &[folder.write("points.csv", text)],
-        &robot,
-        options,
-    ) {
+    let message = |text: &str, options: &ReadOptions| match read(&[folder.write("points.csv", text)], &robot, options) {
         Ok(_) => "no error".to_owned(),
         Err(error) => folder.without_path(&error.to_string()),
     };

@@ -318,11 +318,7 @@ fn files_that_are_none_are_refused() {
         folder.without_path(&error("none.csv")),
         "none.csv: found no such file, expected a measurement file (CSV): check the path"
     );
-    assert!(
-        folder
-            .without_path(&error("."))
-            .starts_with(".: found a directory without text files whose names end in")
-    );
+    assert!(folder.without_path(&error(".")).starts_with(".: found a directory without text files whose names end in"));
     assert_eq!(
         read(&no_paths, &lifting_robot(), &options).unwrap_err().to_string(),
         "found no measurement file, expected at least one"

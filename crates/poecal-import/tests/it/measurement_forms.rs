@@ -4,9 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
-use poecal_import::{
-    DecimalSign, FitWhere, MeasurementFile, ReadOptions, Separator, parse, read, read_joints,
-};
+use poecal_import::{DecimalSign, FitWhere, MeasurementFile, ReadOptions, Separator, parse, read, read_joints};
 use poecal_model::measurement::{Dataset, Quantity, Set};
 use poecal_model::robot::{Joint, JointLimits, Reading, Robot};
 use poecal_numerics::named_unit::UnitSource;
@@ -39,10 +37,7 @@ fn units_stand_in_the_header_or_are_si() {
     assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5]);
     assert!((pose(&file.data, 0).translation - Vector3::new(0.1, 0.2, 0.3)).norm() < ROUNDING);
     let row = file.data.observations[0];
-    assert_eq!(
-        (row.stated.get(Quantity::Position), row.stated.get(Quantity::Rotation)),
-        (Some(5e-5), Some(2e-3))
-    );
+    assert_eq!((row.stated.get(Quantity::Position), row.stated.get(Quantity::Rotation)), (Some(5e-5), Some(2e-3)));
     let units: Vec<_> = file.understood[0].columns.iter().map(|column| column.unit.unwrap()).collect();
     assert_eq!(units, ["deg", "mm", "rad", "mm", "cm", "um", "um", "mrad"]);
     assert_eq!(file.understood[0].columns[2].unit_from, Some(UnitSource::Si));
@@ -51,9 +46,8 @@ fn units_stand_in_the_header_or_are_si() {
 
 #[test]
 fn units_stand_in_round_brackets_or_as_words() {
-    let file = read_plain(
-        "a (deg),lift (Millimetres),b [radians],x(in),y [inch],z (meters),set\n90,250,0.5,10,20,0.3,fit\n",
-    );
+    let file =
+        read_plain("a (deg),lift (Millimetres),b [radians],x(in),y [inch],z (meters),set\n90,250,0.5,10,20,0.3,fit\n");
     assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5]);
     assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.254, 0.508, 0.3));
     let units: Vec<_> = file.understood[0].columns.iter().filter_map(|column| column.unit).collect();
@@ -99,10 +93,7 @@ fn lines_of_separator_and_units_are_read() {
     // The tests of `table` vary the number of bytes per read; here it is a joint table.
     let folder = Folder::new();
     let path = folder.write("joints.csv", "sep=;\na;lift;b\ndeg;mm;deg\n180;100;0\n");
-    assert_eq!(
-        read_joints(path, &lifting_robot(), &ReadOptions::default()).unwrap().readings,
-        [PI, 0.1, 0.0]
-    );
+    assert_eq!(read_joints(path, &lifting_robot(), &ReadOptions::default()).unwrap().readings, [PI, 0.1, 0.0]);
 }
 
 #[test]
@@ -156,13 +147,7 @@ fn orientations_are_quaternions_rotation_vectors_or_angles() {
     let start = "a,lift,b,x,y,z";
     let files = [
         format!("{start},qx,qy,qz,qw\n0,0,0,1,2,3,{qx},{qy},{qz},{qw}\n"),
-        format!(
-            "{start},qw,qx,qy,qz\n0,0,0,1,2,3,{},{},{},{}\n",
-            -1.001 * qw,
-            -1.001 * qx,
-            -1.001 * qy,
-            -1.001 * qz
-        ),
+        format!("{start},qw,qx,qy,qz\n0,0,0,1,2,3,{},{},{},{}\n", -1.001 * qw, -1.001 * qx, -1.001 * qy, -1.001 * qz),
         format!("{start},rx[deg],ry[deg],rz[deg]\n0,0,0,1,2,3,{},{},{}\n", w.x, w.y, w.z),
         format!("{start},roll,pitch,yaw\n0,0,0,1,2,3,0.4,-0.3,2.0\n"),
     ];
@@ -175,10 +160,8 @@ fn orientations_are_quaternions_rotation_vectors_or_angles() {
 
 #[test]
 fn one_file_mixes_points_and_poses() {
-    let file =
-        read_plain("a,lift,b,x,y,z,qx,qy,qz,qw,sigma_rotation\n0,0,0,1,2,3,,,,,\n0,0,0,1,2,3,0,0,0,1,0.01\n");
-    let kinds: Vec<bool> =
-        file.data.observations.iter().map(|row| row.measurement.sees_orientation()).collect();
+    let file = read_plain("a,lift,b,x,y,z,qx,qy,qz,qw,sigma_rotation\n0,0,0,1,2,3,,,,,\n0,0,0,1,2,3,0,0,0,1,0.01\n");
+    let kinds: Vec<bool> = file.data.observations.iter().map(|row| row.measurement.sees_orientation()).collect();
     assert_eq!(kinds, [false, true]);
     assert_eq!((file.understood[0].points, file.understood[0].poses), (1, 1));
     assert_eq!(file.data.targets, [None]);
@@ -193,8 +176,7 @@ fn columns_come_in_any_order_with_ids_sets_and_targets() {
     assert_eq!(file.data.readings(0), [0.1, 0.2, 0.3]);
     assert_eq!(pose(&file.data, 0).translation, Vector3::new(1.0, 2.0, 3.0));
     assert_eq!(file.data.targets, [Some("smr2".to_owned()), Some("smr1".to_owned())]);
-    let rows: Vec<_> =
-        file.data.observations.iter().map(|row| (row.target, row.set, row.source.line)).collect();
+    let rows: Vec<_> = file.data.observations.iter().map(|row| (row.target, row.set, row.source.line)).collect();
     assert_eq!(rows, [(0, Some(Set::Fit), 2), (1, None, 3), (0, Some(Set::HeldOut), 4)]);
     assert_eq!(file.data.ids, ["r1", "", "r3"]);
 }
@@ -217,11 +199,7 @@ fn separators_and_decimal_signs_are_recognised() {
     ];
     for (text, separator, sign) in files {
         let file = read_plain(text);
-        assert_eq!(
-            (file.understood[0].separator, file.understood[0].decimal_sign),
-            (separator, sign),
-            "{text}"
-        );
+        assert_eq!((file.understood[0].separator, file.understood[0].decimal_sign), (separator, sign), "{text}");
         assert_eq!(file.data.readings(0), [0.5, 0.0, -1.5], "{text}");
         assert_eq!(pose(&file.data, 0).translation, Vector3::new(1.0, 2.0, 3.25), "{text}");
     }
@@ -229,8 +207,7 @@ fn separators_and_decimal_signs_are_recognised() {
 
 #[test]
 fn other_columns_are_listed_and_left_alone() {
-    let file =
-        read_plain("a,lift,b,x,y,z,temperature[degC],sigma_postion,Target,\n0,0,0,1,2,3,warm,0.1,A,\n");
+    let file = read_plain("a,lift,b,x,y,z,temperature[degC],sigma_postion,Target,\n0,0,0,1,2,3,warm,0.1,A,\n");
     assert_eq!(file.warnings.len(), 1);
     assert!(
         file.warnings[0].ends_with(
@@ -322,11 +299,7 @@ fn a_mimic_joint_is_read_from_its_leader() {
     let path = folder.write("points.csv", "a,column[mm],b,x,y,z\n0,800,0,1,2,3\n0,900,0,1,2,3\n");
     let file = read(&[path], &robot, &ReadOptions::default()).unwrap();
     assert_eq!(file.data.readings(0), [0.0, 0.8, 0.0]);
-    assert!(
-        file.warnings[0].ends_with("beyond its limits -0.1 to 0.3 m in 1 row (line 3)"),
-        "{:?}",
-        file.warnings
-    );
+    assert!(file.warnings[0].ends_with("beyond its limits -0.1 to 0.3 m in 1 row (line 3)"), "{:?}", file.warnings);
 }
 
 #[test]
@@ -340,8 +313,7 @@ fn several_files_are_joined() {
     let file = read(&paths, &lifting_robot(), &ReadOptions::default()).unwrap();
     assert_eq!(file.data.files, paths);
     assert_eq!(file.data.readings(1), [0.1, 0.0, PI]);
-    let sources: Vec<_> =
-        file.data.observations.iter().map(|row| (row.source.file, row.source.line)).collect();
+    let sources: Vec<_> = file.data.observations.iter().map(|row| (row.source.file, row.source.line)).collect();
     assert_eq!(sources, [(0, 2), (1, 2), (2, 2)]);
     assert_eq!(file.data.ids, ["", "7", ""]);
     assert_eq!(file.understood.len(), 3);
@@ -401,8 +373,7 @@ fn anchors_name_where_distances_are_measured_from() {
     let refused = |rows: &str| {
         let folder = Folder::new();
         let path = folder.write("points.csv", format!("{head}{rows}"));
-        folder
-            .without_path(&read(&[path], &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string())
+        folder.without_path(&read(&[path], &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string())
     };
     assert_eq!(
         refused("20,250,0.5,,,,wire,wall,800\n"),
@@ -416,17 +387,12 @@ fn payloads_are_kilograms() {
     let robot = lifting_robot().with_factors(&["payload".to_owned()]).unwrap();
     let read = |unit: &str| {
         let folder = Folder::new();
-        let path =
-            folder.write("points.csv", format!("a,lift,b,payload{unit},x,y,z\n0,0.1,0,2.5,0.1,0.2,0.3\n"));
-        read(&[path], &robot, &ReadOptions::default())
-            .map_err(|error| folder.without_path(&error.to_string()))
+        let path = folder.write("points.csv", format!("a,lift,b,payload{unit},x,y,z\n0,0.1,0,2.5,0.1,0.2,0.3\n"));
+        read(&[path], &robot, &ReadOptions::default()).map_err(|error| folder.without_path(&error.to_string()))
     };
     for unit in ["", "[kg]"] {
         assert_eq!(read(unit).unwrap().data.readings(0)[3], 2.5);
     }
     let error = read("[g]").unwrap_err();
-    assert!(
-        error.contains("points.csv:1:10: found the unit `g` of `payload`, expected `kg` or none"),
-        "{error}"
-    );
+    assert!(error.contains("points.csv:1:10: found the unit `g` of `payload`, expected `kg` or none"), "{error}");
 }

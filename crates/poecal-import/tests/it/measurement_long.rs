@@ -11,9 +11,8 @@ fn lines() -> Vec<String> {
     let row = |line: usize| {
         let target = if line < LINES / 2 { "a" } else { ["b", "c", "a"][line % 3] };
         let set = if line.is_multiple_of(10) { "held_out" } else { "fit" };
-        let angle = |joint: usize| {
-            ((line * (joint + 3)) % 5000) as f64 / 1000.0 - if line > 15_000 { 4.0 } else { 2.5 }
-        };
+        let angle =
+            |joint: usize| ((line * (joint + 3)) % 5000) as f64 / 1000.0 - if line > 15_000 { 4.0 } else { 2.5 };
         let joints: Vec<String> = (0..6).map(|joint| angle(joint).to_string()).collect();
         format!("row {line},{set},{target},{},0.3,{},0.5", joints.join(","), line as f64 / 7.0 / LINES as f64)
     };
@@ -90,16 +89,10 @@ fn very_many_columns_take_no_longer_each() {
     assert_eq!(wide.warnings.len(), 1);
     assert!(wide.warnings[0].ends_with("`c28`, `c29` and 15970 more"), "{}", wide.warnings[0]);
     let error = read(&with_columns("x,y,z")).unwrap_err().to_string();
-    assert!(
-        error.starts_with("wide.csv:1: found no column `joint1`, expected one for joint `joint1`;"),
-        "{error}"
-    );
+    assert!(error.starts_with("wide.csv:1: found no column `joint1`, expected one for joint `joint1`;"), "{error}");
     assert!(error.len() < 300, "{error}");
     let error = read(&with_columns(&format!("{joints},x,y,z,z"))).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "wide.csv:1:100939: found a second column `z`, expected one; rename or remove one of them"
-    );
+    assert_eq!(error, "wide.csv:1:100939: found a second column `z`, expected one; rename or remove one of them");
 }
 
 #[test]

@@ -29,8 +29,7 @@ impl Moves {
     /// Moves during `span_s`, with a tip speed of up to 0.3 to 1 m/s, with pauses or without.
     fn new(robot: &Robot, span_s: f64, stops: bool, generator: &mut ChaCha8Rng) -> Self {
         let configurations = Configurations::new(robot);
-        let mut moves =
-            Moves { begins_s: vec![], lasts_s: vec![], places: vec![configurations.random(generator)] };
+        let mut moves = Moves { begins_s: vec![], lasts_s: vec![], places: vec![configurations.random(generator)] };
         let mut time = 0.0;
         while time < span_s {
             // The move covers a part of the path to a random configuration.
@@ -41,8 +40,7 @@ impl Moves {
                 let values: Vec<f64> = last.iter().zip(&next).map(|(a, b)| a + share * (b - a)).collect();
                 robot.forward_kinematics(&robot.joint_values(&values)).translation
             };
-            let length: f64 =
-                (0..20).map(|k| (tip(f64::from(k + 1) / 20.0) - tip(f64::from(k) / 20.0)).norm()).sum();
+            let length: f64 = (0..20).map(|k| (tip(f64::from(k + 1) / 20.0) - tip(f64::from(k) / 20.0)).norm()).sum();
             let speed = 0.3 + 0.7 * random::uniform_number(generator);
             // The fastest part of a move is 15/8 of its mean.
             let lasts = (1.9 * length / speed).max(0.6);
@@ -117,17 +115,15 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
         device_anywhere: true,
         ..Simulation::default()
     };
-    let made =
-        simulation.run(&elbow(), if of.is_posed { SessionKind::POSE } else { SessionKind::POINT }).unwrap();
+    let made = simulation.run(&elbow(), if of.is_posed { SessionKind::POSE } else { SessionKind::POINT }).unwrap();
     let mut moves = Moves::new(&made.actual, of.span_s, of.stops, &mut generator);
     if let Some(count) = of.repeats {
         moves.repeat(count, of.span_s);
     }
     let mut elsewhere = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
     let other = of.is_other.then(|| Moves::new(&made.actual, of.span_s, of.stops, &mut elsewhere));
-    let tip = |readings: &[f64]| {
-        made.device_from_base * made.actual.forward_kinematics(&made.actual.joint_values(readings))
-    };
+    let tip =
+        |readings: &[f64]| made.device_from_base * made.actual.forward_kinematics(&made.actual.joint_values(readings));
     let mut joints = format!("time,{}\n", made.data.reading_names().join(","));
     for step in 0..(of.span_s * of.joint_rate) as u32 {
         let time = f64::from(step) / of.joint_rate;
@@ -150,12 +146,8 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
         );
         let late = -of.late_s * (1.0 - random::uniform_number(&mut generator)).ln();
         let stamp = 100.0 + time + of.lag_s + of.drift * (time - middle) + late;
-        write!(
-            seen,
-            "{stamp:.5},{:.6},{:.6},{:.6}",
-            pose.translation.x, pose.translation.y, pose.translation.z
-        )
-        .unwrap();
+        write!(seen, "{stamp:.5},{:.6},{:.6},{:.6}", pose.translation.x, pose.translation.y, pose.translation.z)
+            .unwrap();
         if of.is_posed {
             let [x, y, z, w] = pose.quaternion_xyzw();
             write!(seen, ",{x:.7},{y:.7},{z:.7},{w:.7}").unwrap();
@@ -169,8 +161,8 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     let options = ReadOptions { join: Some(Join::Motion), ..ReadOptions::default() };
     let file = read(&paths, &made.nominal, &options).map_err(|error| error.to_string())?;
     let clock = file.data.moving.clocks[0];
-    let calibration = calibrate(&made.nominal, &file.data, &CalibrationOptions::default())
-        .map_err(|error| error.to_string())?;
+    let calibration =
+        calibrate(&made.nominal, &file.data, &CalibrationOptions::default()).map_err(|error| error.to_string())?;
     let uncertainty = calibration.trust.uncertainty.as_ref().ok_or("no uncertainty")?;
     let n = uncertainty.layout.dim();
     let change = uncertainty.estimate.clock(0);
@@ -320,9 +312,8 @@ fn a_program_in_motion_that_repeats_itself_has_no_wrong_lag() {
                 right += usize::from((found.lag_s - of.lag_s).abs() < 1e-3);
             }
             Err(error) => {
-                refused += usize::from(
-                    error.contains("at several lags of the clocks alike") && error.contains("--lag"),
-                );
+                refused +=
+                    usize::from(error.contains("at several lags of the clocks alike") && error.contains("--lag"));
                 if refused == 1 {
                     println!("{error}");
                 }

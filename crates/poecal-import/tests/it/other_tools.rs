@@ -5,9 +5,7 @@ use std::path::PathBuf;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
-use poecal_import::{
-    CameraFile, PosePairs, PoseSource, PoseUnits, ReadOptions, read_cameras, read_pose_pairs,
-};
+use poecal_import::{CameraFile, PosePairs, PoseSource, PoseUnits, ReadOptions, read_cameras, read_pose_pairs};
 use poecal_model::camera::{Distortion, Lens};
 use poecal_testing::files::Folder;
 
@@ -95,11 +93,14 @@ fn a_lens_is_the_same_in_every_form() {
         assert_eq!(found.cameras[0].lens, expected, "{name}");
     }
     // Open3D's matrix is column by column.
-    let found = cameras("open3d.json", "{\"width\": 1920, \"height\": 1200, \"intrinsic_matrix\": [1400, 0, 0, 0, 1410, 0, 959.5, 599.5, 1]}").unwrap();
+    let found = cameras(
+        "open3d.json",
+        "{\"width\": 1920, \"height\": 1200, \"intrinsic_matrix\": [1400, 0, 0, 0, 1410, 0, 959.5, 599.5, 1]}",
+    )
+    .unwrap();
     assert_eq!(found.cameras[0].lens, Lens { distortion: Distortion::Brown([0.0; 8]), ..lens() });
     let two = "{\"left\": {\"fx\": 1400, \"fy\": 1410, \"ppx\": 1, \"ppy\": 2}, \"right\": {\"fx\": 1400, \"fy\": 1410, \"ppx\": 1, \"ppy\": 2}}";
-    let names: Vec<String> =
-        cameras("two.json", two).unwrap().cameras.into_iter().map(|it| it.name).collect();
+    let names: Vec<String> = cameras("two.json", two).unwrap().cameras.into_iter().map(|it| it.name).collect();
     assert_eq!(names, ["left", "right"]);
 }
 
@@ -118,13 +119,9 @@ fn halcon(parameter: &str) -> String {
 #[test]
 fn the_division_model_of_halcon_is_exact_to_a_thousandth_of_a_pixel() {
     let pinhole = cameras("camera.dat", &halcon("Kappa:kappa: 0;\n")).unwrap();
-    assert_eq!(
-        pinhole.cameras[0].lens.distortion,
-        Distortion::Brown([-0.0, 0.0, 0.0, 0.0, -0.0, -0.0, 0.0, -0.0])
-    );
+    assert_eq!(pinhole.cameras[0].lens.distortion, Distortion::Brown([-0.0, 0.0, 0.0, 0.0, -0.0, -0.0, 0.0, -0.0]));
     for kappa in [-1600.0_f64, 900.0, -40.0] {
-        let found =
-            cameras("camera.dat", &halcon(&format!("Kappa:kappa: {kappa:?};\n  DOUBLE::;\n\n"))).unwrap();
+        let found = cameras("camera.dat", &halcon(&format!("Kappa:kappa: {kappa:?};\n  DOUBLE::;\n\n"))).unwrap();
         let lens = found.cameras[0].lens;
         let focal = 8.2e-3 / 5.5e-6;
         let mut worst = 0.0_f64;
@@ -143,7 +140,8 @@ fn the_division_model_of_halcon_is_exact_to_a_thousandth_of_a_pixel() {
 
 #[test]
 fn lenses_of_other_models_are_named() {
-    let oak = "{\"fx\": 700, \"fy\": 700, \"cx\": 300, \"cy\": 200, \"dist\": [0.1, 0, 0, 0, 0, 0, 0, 0, 0.01, 0, 0, 0]}";
+    let oak =
+        "{\"fx\": 700, \"fy\": 700, \"cx\": 300, \"cy\": 200, \"dist\": [0.1, 0, 0, 0, 0, 0, 0, 0, 0.01, 0, 0, 0]}";
     for (name, text, part) in [
         (
             "realsense.json",
@@ -213,10 +211,7 @@ fn lenses_of_other_models_are_named() {
 /// Poses of a flange and of a target.
 fn poses() -> Vec<(Pose, Pose)> {
     let pose = |at: f64| {
-        Pose::from_xyz_rpy(
-            [0.4 + 0.1 * at.sin(), -0.1 * at, 0.5],
-            [3.0 + 0.3 * at.cos(), 0.2 * at, 0.4 * at.sin()],
-        )
+        Pose::from_xyz_rpy([0.4 + 0.1 * at.sin(), -0.1 * at, 0.5], [3.0 + 0.3 * at.cos(), 0.2 * at, 0.4 * at.sin()])
     };
     (0..5_u8).map(|k| (pose(f64::from(k)), pose(f64::from(k) + 0.5))).collect()
 }
@@ -248,13 +243,9 @@ fn read(paths: &[PathBuf]) -> Result<PosePairs, String> {
 fn are_poses(name: &str, found: &PosePairs) {
     println!("{name}: {:?} {:?}", found.understood, found.warnings);
     assert_eq!(found.flange.poses.len(), poses().len(), "{name}");
-    for ((arm, seen), (own_arm, own_seen)) in
-        poses().iter().zip(found.flange.poses.iter().zip(&found.target.poses))
-    {
+    for ((arm, seen), (own_arm, own_seen)) in poses().iter().zip(found.flange.poses.iter().zip(&found.target.poses)) {
         for (expected, own) in [(arm, own_arm), (seen, own_seen)] {
-            let off = (expected.rotation - own.rotation)
-                .amax()
-                .max((expected.translation - own.translation).amax());
+            let off = (expected.rotation - own.rotation).amax().max((expected.translation - own.translation).amax());
             assert!(off < 1e-9, "{name}: {off}");
         }
     }
@@ -265,9 +256,7 @@ fn samples_of_other_programs_are_the_same_poses() {
     let folder = Folder::new();
     let all = poses();
     let mut texts: Vec<(&str, String)> = Vec::new();
-    let of = |row: &dyn Fn(&Pose, &Pose) -> String| {
-        all.iter().map(|(arm, seen)| row(arm, seen)).collect::<String>()
-    };
+    let of = |row: &dyn Fn(&Pose, &Pose) -> String| all.iter().map(|(arm, seen)| row(arm, seen)).collect::<String>();
     let item = |numbers: &[f64]| numbers.iter().map(|it| format!("    - {it:?}\n")).collect::<String>();
     texts.push((
         "moveit.yaml",
@@ -285,8 +274,7 @@ fn samples_of_other_programs_are_the_same_poses() {
             + &of(&|arm, seen| format!("- robot:\n{}  tracking:\n{}", transform(arm), transform(seen))),
     ));
     let json = |pose: &Pose| {
-        let rows: Vec<String> =
-            sixteen_numbers(pose).chunks(4).map(|row| format!("[{}]", list_numbers(row))).collect();
+        let rows: Vec<String> = sixteen_numbers(pose).chunks(4).map(|row| format!("[{}]", list_numbers(row))).collect();
         format!("[{}]", rows.join(","))
     };
     let matrices = |of: &dyn Fn(&(Pose, Pose)) -> String| all.iter().map(of).collect::<Vec<_>>().join(",\n");
@@ -298,18 +286,13 @@ fn samples_of_other_programs_are_the_same_poses() {
             matrices(&|it| json(&it.1))
         ),
     ));
-    let names =
-        |stem: &str| (0..16).map(|at| stem.replace('#', &at.to_string())).collect::<Vec<_>>().join(",");
+    let names = |stem: &str| (0..16).map(|at| stem.replace('#', &at.to_string())).collect::<Vec<_>>().join(",");
     let rvec = |pose: &Pose| {
-        [rotation::log(&pose.rotation), pose.translation]
-            .iter()
-            .flat_map(|it| it.iter().copied())
-            .collect::<Vec<f64>>()
+        [rotation::log(&pose.rotation), pose.translation].iter().flat_map(|it| it.iter().copied()).collect::<Vec<f64>>()
     };
     let seen = "rvec_x,rvec_y,rvec_z,tvec_x,tvec_y,tvec_z";
-    let by_columns = |pose: &Pose| -> Vec<f64> {
-        (0..16).map(|at| sixteen_numbers(pose)[4 * (at % 4) + at / 4]).collect()
-    };
+    let by_columns =
+        |pose: &Pose| -> Vec<f64> { (0..16).map(|at| sixteen_numbers(pose)[4 * (at % 4) + at / 4]).collect() };
     for (name, stem, is_by_columns) in
         [("rows.csv", "T#", false), ("franka.csv", "O_T_EE[#]", true), ("columns.csv", "pose_#", true)]
     {
@@ -369,11 +352,8 @@ fn a_pose_in_each_file_of_a_folder() {
         visp.write(&format!("pose_cPo_{at}.yaml"), vector(target));
         let mut text = "__version__:\n  serializer: 1\n  data: 1\nFloatMatrix:\n  Data: [\n".to_owned();
         for (row, numbers) in sixteen_numbers(arm).chunks(4).enumerate() {
-            let mm: Vec<f64> = numbers
-                .iter()
-                .enumerate()
-                .map(|(at, it)| if at == 3 && row < 3 { 1e3 * it } else { *it })
-                .collect();
+            let mm: Vec<f64> =
+                numbers.iter().enumerate().map(|(at, it)| if at == 3 && row < 3 { 1e3 * it } else { *it }).collect();
             writeln!(text, "    [{}],", list_numbers(&mm)).unwrap();
         }
         zivid.write(&format!("pos{at:02}.yaml"), text + "  ]\n");
@@ -387,14 +367,10 @@ fn a_pose_in_each_file_of_a_folder() {
     visp.write("pose_rPe_9.yaml", "rows: 6\ncols: 1\ndata: [0, 0, 0, 0, 0, 0]\n");
     let error = read(&[visp.root_path().to_owned()]).unwrap_err();
     assert!(
-        error
-            .contains("found 6 poses of the arm, 5 of the target and 0 of which nothing says whose they are"),
+        error.contains("found 6 poses of the arm, 5 of the target and 0 of which nothing says whose they are"),
         "{error}"
     );
     seen.write("target_9.txt", "1 2 3\n");
     let error = read(&[zivid.root_path().to_owned(), seen.root_path().to_owned()]).unwrap_err();
-    assert!(
-        error.contains("target_9.txt: found 0 poses, expected one in each file of the folder"),
-        "{error}"
-    );
+    assert!(error.contains("target_9.txt: found 0 poses, expected one in each file of the folder"), "{error}");
 }

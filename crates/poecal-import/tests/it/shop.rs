@@ -76,13 +76,7 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
                 largest_error(&found)
             );
             // 1e-9 m, and the same number of degrees.
-            assert!(
-                largest_error(&found) < 1e-6,
-                "{} {}: {:e}",
-                robot.name,
-                kind.word(),
-                largest_error(&found)
-            );
+            assert!(largest_error(&found) < 1e-6, "{} {}: {:e}", robot.name, kind.word(), largest_error(&found));
             assert_eq!(
                 (identified.rank, identified.parameters),
                 (rank, rank + lacks),
@@ -204,8 +198,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
 #[test]
 fn a_tolerance_is_needed_where_nothing_has_a_length() {
     let options = CalibrationOptions { tolerance: None, ..geometry() };
-    for (kind, is_refused) in
-        [(SessionKind::SOCKET, true), (SessionKind::PLANE, true), (SessionKind::DISTANCE, false)]
+    for (kind, is_refused) in [(SessionKind::SOCKET, true), (SessionKind::PLANE, true), (SessionKind::DISTANCE, false)]
     {
         let made = exact_simulation(80, 1).run(&elbow(), kind).unwrap();
         let found = calibrate(&made.nominal, &made.data, &options);
@@ -264,8 +257,7 @@ fn sizes_are_chosen_where_other_sockets_are_held_out() {
 /// Corrections are fitted for these kinds too.
 #[test]
 fn corrections_are_fitted_where_there_is_no_device() {
-    let made =
-        Simulation { count: 200, ..Simulation::default() }.run(&elbow(), SessionKind::DISTANCE).unwrap();
+    let made = Simulation { count: 200, ..Simulation::default() }.run(&elbow(), SessionKind::DISTANCE).unwrap();
     let options = CalibrationOptions { corrections: Corrections::Auto, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     assert!(found.correction.is_some());

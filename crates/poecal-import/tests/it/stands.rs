@@ -75,8 +75,7 @@ fn session(seed: u64) -> Option<Joined> {
         device_anywhere: true,
         ..Simulation::default()
     };
-    let made =
-        simulation.run(&elbow(), if is_posed { SessionKind::POSE } else { SessionKind::POINT }).unwrap();
+    let made = simulation.run(&elbow(), if is_posed { SessionKind::POSE } else { SessionKind::POINT }).unwrap();
     let spans = stands(random, count);
     let (from, to) = (spans[0].0, spans[count - 1].1);
     let lag_s = 60.0 * uniform_number(random) - 30.0;
@@ -116,8 +115,7 @@ fn session(seed: u64) -> Option<Joined> {
             one.translation + (other.translation - one.translation) * share,
         );
         let position = pose.translation.map(|it| it + 2e-4 * normal(random));
-        write!(seen, "{:.4},{:.6},{:.6},{:.6}", 5000.0 + time + lag_s, position.x, position.y, position.z)
-            .unwrap();
+        write!(seen, "{:.4},{:.6},{:.6},{:.6}", 5000.0 + time + lag_s, position.x, position.y, position.z).unwrap();
         if is_posed {
             let [x, y, z, w] = pose.quaternion_xyzw();
             write!(seen, ",{x:.6},{y:.6},{z:.6},{w:.6}").unwrap();
@@ -128,18 +126,15 @@ fn session(seed: u64) -> Option<Joined> {
     let paths = [folder.path("joints.csv"), folder.path("seen.csv")];
     fs::write(&paths[0], joints).unwrap();
     fs::write(&paths[1], seen).unwrap();
-    let file = read(&paths, &made.nominal, &ReadOptions::default())
-        .map_err(|error| println!("{seed}: {error}"))
-        .ok()?;
+    let file =
+        read(&paths, &made.nominal, &ReadOptions::default()).map_err(|error| println!("{seed}: {error}")).ok()?;
     let nearest = |far: &dyn Fn(usize) -> f64| (0..count).min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap();
     let rows = (0..file.data.len())
         .map(|row| {
             let own = file.data.readings(row);
-            let of_joints =
-                nearest(&|at| own.iter().zip(made.data.readings(at)).map(|(a, b)| (a - b).abs()).sum());
+            let of_joints = nearest(&|at| own.iter().zip(made.data.readings(at)).map(|(a, b)| (a - b).abs()).sum());
             let position = file.data.observations[row].measurement.position().unwrap();
-            let of_seen =
-                nearest(&|at| (made.data.observations[at].measurement.position().unwrap() - position).norm());
+            let of_seen = nearest(&|at| (made.data.observations[at].measurement.position().unwrap() - position).norm());
             (of_joints, of_seen)
         })
         .collect();
@@ -166,8 +161,7 @@ fn stands_of_two_recordings_are_joined_rightly() {
         wrong += bad;
         paired += found.rows.len();
         possible += found.stands;
-        let lag =
-            found.said.split("at a lag of ").nth(1).and_then(|it| it.split(' ').next()?.parse::<f64>().ok());
+        let lag = found.said.split("at a lag of ").nth(1).and_then(|it| it.split(' ').next()?.parse::<f64>().ok());
         let is_near = lag.is_some_and(|it| (it - found.lag_s).abs() < 0.1);
         if bad > 0 || !is_near {
             let which: Vec<_> = found.rows.iter().filter(|it| it.0 != it.1).collect();
@@ -180,19 +174,13 @@ fn stands_of_two_recordings_are_joined_rightly() {
         }
         right += usize::from(bad == 0 && is_near);
     }
-    println!(
-        "of {all}: {right} right, {refused} refused; {wrong} wrong pairs, {paired} of {possible} stands"
-    );
-    assert!(
-        (right + refused) * 100 >= 98 * all && wrong == 0 && refused * 50 <= all,
-        "{right} {refused} {wrong}"
-    );
+    println!("of {all}: {right} right, {refused} refused; {wrong} wrong pairs, {paired} of {possible} stands");
+    assert!((right + refused) * 100 >= 98 * all && wrong == 0 && refused * 50 <= all, "{right} {refused} {wrong}");
 }
 
 #[test]
 fn a_program_that_repeats_itself_is_refused_until_the_lag_is_stated() {
-    let made =
-        Simulation { count: 8, seed: 3, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let made = Simulation { count: 8, seed: 3, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     // The same configurations occur three times, each for a second.
     let spans: Vec<(f64, f64)> = (0..24).map(|at| (2.0 * f64::from(at), 2.0 * f64::from(at) + 1.0)).collect();
     let (mut joints, mut seen) =

@@ -24,11 +24,8 @@ pub(super) fn normalisation(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
             adjoint.ratio_words()
         ));
     }
-    let without = if at_truth {
-        "Without noise it ends at the truth."
-    } else {
-        "Even without noise it misses the truth."
-    };
+    let without =
+        if at_truth { "Without noise it ends at the truth." } else { "Even without noise it misses the truth." };
     let with = if worse {
         "With noise it converges beside the least-squares optimum"
     } else {
@@ -49,15 +46,12 @@ pub(super) fn normalisation(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
 
 pub(super) fn convergence(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
     let words = |basins: &[&Basin]| {
-        let share = |it: &&Basin| {
-            format!("{:.1} % from {} deg and {} mm", 100.0 * it.share, it.error_deg, it.error_mm)
-        };
+        let share = |it: &&Basin| format!("{:.1} % from {} deg and {} mm", 100.0 * it.share, it.error_deg, it.error_mm);
         basins.iter().map(share).collect::<Vec<String>>().join(", ")
     };
     let poses = evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Poses, Method::GaussNewton)?;
     let points = evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Points, Method::GaussNewton)?;
-    let damped =
-        evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Points, Method::LevenbergMarquardt)?;
+    let damped = evidence.basins(PaperFormulation::Adjoint, MeasurementKind::Points, Method::LevenbergMarquardt)?;
     let mut near = poses.iter().chain(&points).filter(|it| it.error_deg <= ROBUST_DEG);
     Ok(make_claim(
         "Iterated least squares converges robustly.",

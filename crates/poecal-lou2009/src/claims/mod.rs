@@ -58,12 +58,7 @@ impl ClaimEvidence<'_> {
     }
 
     /// The distant starts, the nearest first.
-    fn basins(
-        &self,
-        formulation: PaperFormulation,
-        seen: MeasurementKind,
-        method: Method,
-    ) -> Result<Vec<&Basin>> {
+    fn basins(&self, formulation: PaperFormulation, seen: MeasurementKind, method: Method) -> Result<Vec<&Basin>> {
         let basins: Vec<&Basin> = self.found.basins(formulation, seen, method).collect();
         if basins.is_empty() {
             return Err(missing_error("start from afar", formulation, seen));
@@ -82,14 +77,7 @@ fn missing_error(what: &str, formulation: PaperFormulation, seen: MeasurementKin
 
 /// A statement of the paper.
 fn make_claim(claim: &str, paper: &str, (criterion, holds): (String, bool), measured: String) -> Claim {
-    Claim {
-        claim: claim.to_owned(),
-        paper: paper.to_owned(),
-        measured,
-        criterion,
-        holds,
-        said_by_paper: true,
-    }
+    Claim { claim: claim.to_owned(), paper: paper.to_owned(), measured, criterion, holds, said_by_paper: true }
 }
 
 /// A finding that the paper leaves out.
@@ -128,13 +116,11 @@ mod tests {
     #[test]
     fn a_claim_without_evidence_is_an_error() {
         let found =
-            super::super::lou2009(&super::super::ReproductionOptions { trials: 1, starts: 1, seed: 3 })
-                .unwrap();
+            super::super::lou2009(&super::super::ReproductionOptions { trials: 1, starts: 1, seed: 3 }).unwrap();
         let runs = super::super::runs::runs(3).unwrap();
         let without_fits = Reproduction { efficiency: vec![], ..found.clone() };
         let without_starts = Reproduction { basin: vec![], ..found.clone() };
-        for (runs, found) in [(&runs[..0], &found), (&runs[..], &without_fits), (&runs[..], &without_starts)]
-        {
+        for (runs, found) in [(&runs[..0], &found), (&runs[..], &without_fits), (&runs[..], &without_starts)] {
             let error = claims(&ClaimEvidence { runs, found, seed: 3 }).unwrap_err();
             println!("{error}");
             assert_eq!(error.kind(), ErrorKind::Problem);

@@ -33,11 +33,7 @@ pub(super) fn original_without_offsets(evidence: &ClaimEvidence<'_>) -> Result<C
             ),
             works(poses) && works(points),
         ),
-        format!(
-            "Noise-free, screws as free numbers: from poses {}; from points {}.",
-            words(poses),
-            words(points)
-        ),
+        format!("Noise-free, screws as free numbers: from poses {}; from points {}.", words(poses), words(points)),
     ))
 }
 
@@ -78,9 +74,7 @@ pub(super) fn original_prediction_with_offsets(evidence: &ClaimEvidence<'_>) -> 
         "With joint offsets, the original calibration fails.",
         "Abstract: it \"always fails with the existence of joint offset errors\".",
         (
-            format!(
-                "It does not converge, or its held-out error stays above {RECOVERED:.0e} m without noise."
-            ),
+            format!("It does not converge, or its held-out error stays above {RECOVERED:.0e} m without noise."),
             !predicts,
         ),
         measured,

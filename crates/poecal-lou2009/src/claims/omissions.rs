@@ -19,7 +19,8 @@ pub(super) fn redundancy(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
         "The components of η are redundant.",
         "(18) and (26) take six for each joint; nothing is said of their rank.",
         (
-            "The matrix lacks rank, and has as much as the minimal basis has unknowns, for poses and for points.".to_owned(),
+            "The matrix lacks rank, and has as much as the minimal basis has unknowns, for poses and for points."
+                .to_owned(),
             redundant(poses) && redundant(points),
         ),
         format!(
@@ -32,9 +33,8 @@ pub(super) fn redundancy(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
 
 pub(super) fn point_on_axis(evidence: &ClaimEvidence<'_>) -> Result<Claim> {
     let session = runs::session(false, MeasurementKind::Points, evidence.seed);
-    let rank = |estimate: &Estimate| {
-        literal::singular_values(&runs::matrix(&session, estimate, PaperFormulation::Adjoint)).1
-    };
+    let rank =
+        |estimate: &Estimate| literal::singular_values(&runs::matrix(&session, estimate, PaperFormulation::Adjoint)).1;
     let start = rank(&session.start());
     let end = rank(evidence.end_of_points()?);
     Ok(left_out(

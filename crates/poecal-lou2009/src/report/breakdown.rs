@@ -18,9 +18,7 @@ pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
     let line = |(style, word): (usize, &&str)| PlotLine {
         name: (*word).to_owned(),
         style,
-        points: entries(found, word)
-            .map(|entry| [f64::from(entry.share_percent), entry.error_ratio_median])
-            .collect(),
+        points: entries(found, word).map(|entry| [f64::from(entry.share_percent), entry.error_ratio_median]).collect(),
     };
     let plot = LinePlot {
         title: "Held-out error by share of gross errors".to_owned(),
@@ -30,15 +28,11 @@ pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
             found.sessions
         ),
         x: PlotAxis::new("gross errors, % of the rows", AxisScale::Linear).with_values(&[0.0, 50.0]),
-        y: PlotAxis::new("held-out error, times that without gross errors", AxisScale::Log)
-            .with_values(&[1.0]),
+        y: PlotAxis::new("held-out error, times that without gross errors", AxisScale::Log).with_values(&[1.0]),
         lines: ORDER.iter().enumerate().map(line).collect(),
         mark: None,
     };
-    Ok(vec![
-        ("figure-breakdown.svg".to_owned(), plot.svg()),
-        ("results.json".to_owned(), poecal_report::json(found)?),
-    ])
+    Ok(vec![("figure-breakdown.svg".to_owned(), plot.svg()), ("results.json".to_owned(), poecal_report::json(found)?)])
 }
 
 /// The table of a breakdown, in 80 columns.

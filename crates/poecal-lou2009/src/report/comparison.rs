@@ -5,10 +5,7 @@ use crate::{ElbowRun, MeasurementKind, Method, PaperFormulation, PaperResidual, 
 
 /// Without noise, with noise, with offsets, from distant starts: a paragraph for each supported by the findings.
 pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
-    [without_noise(found), with_noise(found), with_offsets(found), from_afar(found)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [without_noise(found), with_noise(found), with_offsets(found), from_afar(found)].into_iter().flatten().collect()
 }
 
 fn without_noise(found: &Reproduction) -> Option<String> {
@@ -93,10 +90,8 @@ fn from_afar(found: &Reproduction) -> Option<String> {
     let row = |formulation, method| {
         found.basins(formulation, MeasurementKind::Points, method).find(|row| row.error_deg == furthest)
     };
-    let (screw, adjoint) = (
-        row(PaperFormulation::Screw, Method::GaussNewton)?,
-        row(PaperFormulation::Adjoint, Method::GaussNewton)?,
-    );
+    let (screw, adjoint) =
+        (row(PaperFormulation::Screw, Method::GaussNewton)?, row(PaperFormulation::Adjoint, Method::GaussNewton)?);
     let verdict = if screw.exceeds(adjoint) {
         "the original is better"
     } else if adjoint.exceeds(screw) {

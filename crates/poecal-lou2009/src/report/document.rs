@@ -38,9 +38,7 @@ impl ReportDocument {
     pub(super) fn into_plots(self) -> impl Iterator<Item = NamedPlot> {
         self.blocks.into_iter().flat_map(|block| match block {
             ReportBlock::Figure(figure) => figure.plots,
-            ReportBlock::Heading(_) | ReportBlock::Text(_) | ReportBlock::Code(_) | ReportBlock::Table(_) => {
-                Vec::new()
-            }
+            ReportBlock::Heading(_) | ReportBlock::Text(_) | ReportBlock::Code(_) | ReportBlock::Table(_) => Vec::new(),
         })
     }
 }

@@ -28,15 +28,13 @@ fn trace_plot(
     (what, unit): (&str, &str),
     value: fn(&Iteration) -> f64,
 ) -> LinePlot {
-    let chosen =
-        |run: &&ElbowRun| run.measurement == seen && run.offsets_in_truth == offsets_in_truth && !run.noise;
+    let chosen = |run: &&ElbowRun| run.measurement == seen && run.offsets_in_truth == offsets_in_truth && !run.noise;
     let line = |run: &ElbowRun| PlotLine {
         name: run.formulation.word().to_owned(),
         style: style(run.formulation),
         points: run.trace.iter().enumerate().map(|(k, state)| [k as f64, value(state)]).collect(),
     };
-    let title =
-        format!("{what}, {}, {} joint offsets", seen.word(), if offsets_in_truth { "with" } else { "no" });
+    let title = format!("{what}, {}, {} joint offsets", seen.word(), if offsets_in_truth { "with" } else { "no" });
     LinePlot {
         description: format!("{title}, by iteration, a line for each formulation."),
         title,
@@ -95,8 +93,7 @@ pub(super) fn deviations(found: &Reproduction) -> PlotFigure {
         [|row| &row.nominal, |row| &row.from_poses, |row| &row.from_points];
     let screws = |part: Range<usize>, factor| {
         identified.map(|of| {
-            let parts =
-                found.screws.iter().map(|row| (&of(row)[part.clone()], &row.prescribed[part.clone()]));
+            let parts = found.screws.iter().map(|row| (&of(row)[part.clone()], &row.prescribed[part.clone()]));
             parts.flat_map(|(values, prescribed)| differences(values, prescribed, factor)).collect()
         })
     };
@@ -184,8 +181,7 @@ pub(super) fn spectra(found: &Reproduction) -> PlotFigure {
         let values = spectrum.singular_values.iter().enumerate();
         let gap = (spectrum.rank < spectrum.columns)
             .then(|| AxisMark { at: spectrum.rank as f64 + 0.5, label: format!("rank {}", spectrum.rank) });
-        let title =
-            format!("{}, {}: rank {} of {}", spectrum.matrix, spectrum.at, spectrum.rank, spectrum.columns);
+        let title = format!("{}, {}: rank {} of {}", spectrum.matrix, spectrum.at, spectrum.rank, spectrum.columns);
         let plot = LinePlot {
             description: format!("Singular values, the largest first. {title}."),
             title,
@@ -212,8 +208,7 @@ pub(super) fn spectra(found: &Reproduction) -> PlotFigure {
 /// Figure 6: accuracy with noise against the bound.
 pub(super) fn efficiency(found: &Reproduction) -> PlotFigure {
     let rows = distinct_values(found.efficiency.iter().map(|row| (row.formulation, row.measurement)));
-    let ways =
-        distinct_values(found.efficiency.iter().map(|row| (row.residual.as_str(), row.method.as_str())));
+    let ways = distinct_values(found.efficiency.iter().map(|row| (row.residual.as_str(), row.method.as_str())));
     let ratio = |(formulation, seen): (PaperFormulation, MeasurementKind), way: (&str, &str)| {
         let fits = |row: &&crate::Efficiency| {
             (row.formulation, row.measurement) == (formulation, seen)
@@ -233,17 +228,13 @@ pub(super) fn efficiency(found: &Reproduction) -> PlotFigure {
         description: "Ratio of the RMS held-out error of many noisy fits to the Cramér-Rao bound.".to_owned(),
         // A scatter of a percent must not fill the plot.
         x: PlotAxis::new("held-out RMS error over bound, ratio", scale).with_values(&[0.9, 1.1]),
-        rows: rows
-            .iter()
-            .map(|(formulation, seen)| format!("{}, {}", formulation.word(), seen.word()))
-            .collect(),
+        rows: rows.iter().map(|(formulation, seen)| format!("{}, {}", formulation.word(), seen.word())).collect(),
         series: ways.iter().enumerate().map(series).collect(),
         joined: false,
         mark: Some(AxisMark { at: 1.0, label: "bound".to_owned() }),
     };
     PlotFigure {
-        caption: "Figure 6. Accuracy with noise: 1 is the best that any unbiased estimator can do."
-            .to_owned(),
+        caption: "Figure 6. Accuracy with noise: 1 is the best that any unbiased estimator can do.".to_owned(),
         plots: vec![named_dots("6-efficiency".to_owned(), plot)],
     }
 }
@@ -252,15 +243,11 @@ pub(super) fn efficiency(found: &Reproduction) -> PlotFigure {
 pub(super) fn basin(found: &Reproduction) -> PlotFigure {
     let panels = distinct_values(found.basin.iter().map(|row| (row.measurement, row.method.as_str())));
     let plot = |(k, (seen, method)): (usize, &(MeasurementKind, &str))| {
-        let here =
-            || found.basin.iter().filter(|row| (row.measurement, row.method.as_str()) == (*seen, *method));
+        let here = || found.basin.iter().filter(|row| (row.measurement, row.method.as_str()) == (*seen, *method));
         let line = |formulation: PaperFormulation| PlotLine {
             name: formulation.word().to_owned(),
             style: style(formulation),
-            points: here()
-                .filter(|row| row.formulation == formulation)
-                .map(|row| [row.error_deg, row.share])
-                .collect(),
+            points: here().filter(|row| row.formulation == formulation).map(|row| [row.error_deg, row.share]).collect(),
         };
         let title = format!("Starts that converge, {}, {method}", seen.word());
         let plot = LinePlot {

@@ -57,10 +57,7 @@ mod tests {
     fn numbers_read_well() {
         assert_eq!([0.0, 1.25, -12.5, -3e-11].map(number), ["0", "1.250", "-12.50", "-3.0e-11"]);
         assert_eq!([f64::NAN, f64::INFINITY, 1e7].map(number), ["not a number", "infinite", "1.0e7"]);
-        assert_eq!(
-            [20.0, 5e-5 * 1e3, 0.01_f64.to_radians().to_degrees()].map(format_stated),
-            ["20", "0.05", "0.01"]
-        );
+        assert_eq!([20.0, 5e-5 * 1e3, 0.01_f64.to_radians().to_degrees()].map(format_stated), ["20", "0.05", "0.01"]);
         assert_eq!([1.0, 0.9612, f64::NAN].map(percent), ["100.0 %", "96.1 %", "not a number"]);
         assert_eq!([-1e-9, 0.123_46].map(four_decimals), ["0.0000", "0.1235"]);
     }

@@ -138,14 +138,14 @@ fn left_out(found: &Reproduction) -> String {
 
 /// Number of iterations of each formulation.
 fn convergence(found: &Reproduction) -> String {
-    let start = "Plain Gauss-Newton, as in the paper, from the nominal screws; no noise, no joint offsets in the truth.";
+    let start =
+        "Plain Gauss-Newton, as in the paper, from the nominal screws; no noise, no joint offsets in the truth.";
     let words = |run: &ElbowRun| {
         let end = if run.converged { "" } else { ", not converged" };
         format!("`{}` {}{end}", run.formulation.word(), run.iterations)
     };
     let sentences = [MeasurementKind::Poses, MeasurementKind::Points].map(|seen| {
-        let runs =
-            found.runs.iter().filter(|run| run.measurement == seen && !run.offsets_in_truth && !run.noise);
+        let runs = found.runs.iter().filter(|run| run.measurement == seen && !run.offsets_in_truth && !run.noise);
         let words: Vec<String> = runs.map(words).collect();
         let words = if words.is_empty() { "none".to_owned() } else { words.join("; ") };
         format!("Iterations from {}: {words}.", seen.word())
@@ -154,11 +154,7 @@ fn convergence(found: &Reproduction) -> String {
 }
 
 /// The largest difference of a part of the screws from prescribed.
-fn largest_screw_difference(
-    found: &Reproduction,
-    of: fn(&ScrewRow) -> &[f64; 6],
-    part: std::ops::Range<usize>,
-) -> f64 {
+fn largest_screw_difference(found: &Reproduction, of: fn(&ScrewRow) -> &[f64; 6], part: std::ops::Range<usize>) -> f64 {
     let (values, prescribed): (Vec<f64>, Vec<f64>) = found
         .screws
         .iter()

@@ -96,10 +96,8 @@ fn screw_rows(row: &ScrewRow) -> Vec<Vec<String>> {
 /// Largest difference of two lists; NaN if one of them contains NaN.
 pub(super) fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-    differences.fold(
-        0.0,
-        |largest, difference| if difference > largest || difference.is_nan() { difference } else { largest },
-    )
+    differences
+        .fold(0.0, |largest, difference| if difference > largest || difference.is_nan() { difference } else { largest })
 }
 
 pub(super) fn point(found: &Reproduction) -> DocumentTable {
@@ -110,8 +108,7 @@ pub(super) fn point(found: &Reproduction) -> DocumentTable {
         cells.push(mm(largest_difference(position, &point.prescribed)));
         cells
     };
-    let rows =
-        [("nominal", &point.nominal), ("prescribed", &point.prescribed), ("from points", &point.from_points)];
+    let rows = [("nominal", &point.nominal), ("prescribed", &point.prescribed), ("from points", &point.from_points)];
     DocumentTable {
         caption: "Table 5. The point P_c0 beside Table II, mm. The last column is the largest difference from the prescribed point.".to_owned(),
         head: words(&["point", "x", "y", "z", "off"]),
@@ -212,12 +209,9 @@ pub(super) fn basin(found: &Reproduction) -> DocumentTable {
         cells
     };
     let mut head = words(&["formulation", "seen", "residual", "method", "starts"]);
-    head.extend(
-        sizes.iter().map(|(deg, mm)| format!("{} deg, {} mm", format_stated(*deg), format_stated(*mm))),
-    );
+    head.extend(sizes.iter().map(|(deg, mm)| format!("{} deg, {} mm", format_stated(*deg), format_stated(*mm))));
     DocumentTable {
-        caption: "Table 9. Share of starts that reach the truth, by how far each axis and the tip is off."
-            .to_owned(),
+        caption: "Table 9. Share of starts that reach the truth, by how far each axis and the tip is off.".to_owned(),
         head,
         rows: fits.iter().map(row).collect(),
         words: 4,

@@ -1,8 +1,8 @@
 //! Made-up findings of a reproduction: of the right shape, with numbers from formulas. They are not measured.
 
 use poecal_lou2009::{
-    Basin, Claim, Efficiency, ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow,
-    PaperFormulation, PointRow, Reproduction, ScrewRow,
+    Basin, Claim, Efficiency, ElbowRun, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PaperFormulation,
+    PointRow, Reproduction, ScrewRow,
 };
 
 const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
@@ -101,12 +101,7 @@ fn claims() -> Vec<Claim> {
             "The prediction is right to 4.5e-13 mm; it is the offsets that are not identifiable: they are off by 6.25 deg",
             false,
         ),
-        claim(
-            "Offsets add no rank (Proposition 1).",
-            "rank 42 of 48 columns",
-            "rank 42 of 48, gap of 1.3e11",
-            true,
-        ),
+        claim("Offsets add no rank (Proposition 1).", "rank 42 of 48 columns", "rank 42 of 48, gap of 1.3e11", true),
         claim("The components of η are redundant.", "nothing is said", "rank 30 of 42", true),
         claim("Text | with <markup> & \"quotes\" stays *text*.", "nowhere", "as it is", true),
     ]
@@ -203,8 +198,7 @@ fn basin() -> Vec<Basin> {
         for measurement in SEEN {
             for (method, extra) in [("gauss-newton", 0.0), ("levenberg-marquardt", 0.3)] {
                 for error_deg in [1.0, 5.0, 10.0, 20.0] {
-                    let lost: f64 =
-                        (0.0025 * error_deg * error_deg * (1.0 + 0.3 * k as f64) - extra).max(0.0);
+                    let lost: f64 = (0.0025 * error_deg * error_deg * (1.0 + 0.3 * k as f64) - extra).max(0.0);
                     rows.push(Basin {
                         formulation,
                         measurement,

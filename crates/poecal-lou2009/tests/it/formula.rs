@@ -27,9 +27,8 @@ impl Formula {
 
     /// The product of exponentials without `M`, lou2009 (2).
     fn motion(&self) -> Pose {
-        (self.twists.iter().zip(&self.values)).fold(Pose::identity(), |before, (xi, &value)| {
-            before * Pose::exp(&Twist::new(xi.v * value, xi.w * value))
-        })
+        (self.twists.iter().zip(&self.values))
+            .fold(Pose::identity(), |before, (xi, &value)| before * Pose::exp(&Twist::new(xi.v * value, xi.w * value)))
     }
 }
 

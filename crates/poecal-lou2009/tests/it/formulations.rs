@@ -68,8 +68,7 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
     let none = Noise::new(0.0, 0.0);
     for robot in robots() {
         let mut made = session(&robot, SessionKind::POSE, none, false);
-        let offsets: Vec<f64> =
-            (0..robot.joints.len()).map(|k| 0.03 * (k as f64 * 1.3 + 0.4).sin()).collect();
+        let offsets: Vec<f64> = (0..robot.joints.len()).map(|k| 0.03 * (k as f64 * 1.3 + 0.4).sin()).collect();
         let shifted = poecal_model::offsets::into_screws(&made.actual, &offsets).unwrap();
         let exact = Simulation {
             noise_position_m: 0.0,
@@ -120,8 +119,7 @@ fn formulations_part_with_noise() {
 fn spatial_residual_costs_accuracy() {
     let exact = session(&elbow(), SessionKind::POSE, Noise::new(0.0, 0.0), true);
     let with = |residual| to_formulation(PaperFormulation::Adjoint, residual, Method::LevenbergMarquardt);
-    let spatial =
-        CalibrationOptions { formulation: with(PaperResidual::Spatial), ..CalibrationOptions::default() };
+    let spatial = CalibrationOptions { formulation: with(PaperResidual::Spatial), ..CalibrationOptions::default() };
     let found = calibrate(&exact.nominal, &exact.data, &spatial).unwrap();
     println!("noise-free {:.1e} mm", worst_mm(&found));
     assert!(worst_mm(&found) < EXACT_MM);
@@ -138,9 +136,7 @@ fn spatial_residual_costs_accuracy() {
         };
         let made = simulation.run(&elbow(), SessionKind::POSE).unwrap();
         let unseen = simulation.held_out(&made, SessionKind::POSE, 100).unwrap();
-        for (residual, sum) in
-            [(PaperResidual::Spatial, &mut with_spatial), (PaperResidual::Tool, &mut with_tool)]
-        {
+        for (residual, sum) in [(PaperResidual::Spatial, &mut with_spatial), (PaperResidual::Tool, &mut with_tool)] {
             let options = CalibrationOptions {
                 frame: DeviceFrameKnowledge::Base,
                 formulation: with(residual),

@@ -22,8 +22,7 @@ const NOISE: Noise = Noise::new(0.5, 0.8);
 const LENGTH_M: f64 = 0.7;
 
 fn robot() -> Robot {
-    let turning =
-        |name: &str, w: [f64; 3], q: [f64; 3]| Joint::revolute(name, Screw::revolute(&w.into(), &q.into()));
+    let turning = |name: &str, w: [f64; 3], q: [f64; 3]| Joint::revolute(name, Screw::revolute(&w.into(), &q.into()));
     let joints = vec![
         turning("a", [0.1, -0.2, 0.9], [0.05, 0.1, 0.0]),
         Joint::prismatic("b", Screw::prismatic(&Vector3::new(0.7, 0.2, -0.4))),
@@ -33,13 +32,7 @@ fn robot() -> Robot {
 }
 
 /// A measurement that differs from the estimate's prediction by a shift and a turn.
-fn data(
-    robot: &Robot,
-    estimate: &Estimate,
-    readings: &[f64],
-    residual: Option<PaperResidual>,
-    turn: f64,
-) -> Dataset {
+fn data(robot: &Robot, estimate: &Estimate, readings: &[f64], residual: Option<PaperResidual>, turn: f64) -> Dataset {
     let packed = PackedValues::new(robot, readings, readings.len());
     let mut chain = RowChain::default();
     chain.evaluate(&Linkage::new(estimate), &packed, 0, 0);
@@ -88,8 +81,7 @@ fn jacobians_agree_with_differences() {
     for (joint, it) in robot.joints.iter().enumerate() {
         parameters.push(("free screw", FreeScrew::parameter(joint, it.kind)));
         parameters.push(("screw axis", Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
-        parameters
-            .push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::OFFSET })));
+        parameters.push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::OFFSET })));
     }
     let mut compared = 0;
     for (seen, residual) in
@@ -143,8 +135,7 @@ fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
 /// The kernels treat the paper's residual as any function of the target's pose, and its screws as columns supplied by rows.
 #[test]
 fn the_kernels_sum_them_as_their_formulas_do() {
-    let simulation =
-        poecal_model::simulate::Simulation { count: 60, ..poecal_model::simulate::Simulation::default() };
+    let simulation = poecal_model::simulate::Simulation { count: 60, ..poecal_model::simulate::Simulation::default() };
     for (robot, kind) in [
         (poecal_model::simulate::elbow(), poecal_model::measurement::SessionKind::POSE),
         (poecal_model::simulate::gantry(), poecal_model::measurement::SessionKind::MIXED),
@@ -161,9 +152,7 @@ fn the_kernels_sum_them_as_their_formulas_do() {
             let seen = poecal_fit::state::Session::new(&robot, &made.data, &packed, true);
             let about = Vector3::new(0.3, 0.1, 0.2);
             let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, about))];
-            free.extend(
-                formulation.joint_parameters(&robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>()),
-            );
+            free.extend(formulation.joint_parameters(&robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>()));
             free.push(Parameter::TargetFrame(TargetFrame::new(0)));
             let noise = Noise::new(5e-5, 2e-4);
             let problem = Problem::new(seen, made.data.all_rows(), free, noise);

@@ -45,9 +45,7 @@ fn has_sliding_joint(robot: &Robot) -> bool {
 
 /// No errors, and errors of tenths of a metre and radian.
 fn errors(robot: &Robot) -> [AdjointErrors; 2] {
-    let twist = |k: f64| {
-        Twist::from_vector(&Vector6::from_fn(|row, _| 0.3 * (k * 2.3 + row as f64 * 1.7 + 0.5).sin()))
-    };
+    let twist = |k: f64| Twist::from_vector(&Vector6::from_fn(|row, _| 0.3 * (k * 2.3 + row as f64 * 1.7 + 0.5).sin()));
     let eta = (0..robot.joints.len()).map(|k| twist(k as f64)).collect();
     [AdjointErrors::zero(robot), AdjointErrors { eta, upsilon: twist(9.0) }]
 }
@@ -100,12 +98,7 @@ fn closed_form_is_the_printed_integral() {
 }
 
 /// The adjoint formulation's matrix by theory.md §3 (12) and (12a), at non-zero errors by (10b).
-fn telescoping(
-    nominal: &Robot,
-    errors: &AdjointErrors,
-    values: &[f64],
-    seen: MeasurementKind,
-) -> DMatrix<f64> {
+fn telescoping(nominal: &Robot, errors: &AdjointErrors, values: &[f64], seen: MeasurementKind) -> DMatrix<f64> {
     let robot = errors.apply(nominal);
     let prefixes = prefixes(&robot, values);
     let last = prefixes[prefixes.len() - 1];
@@ -243,8 +236,7 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                 for (i, joint) in robot.joints.iter().enumerate() {
                     let screw = seen * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
                     let free = FreeScrew::parameter(i, joint.kind);
-                    let shift =
-                        Parameter::ValueTerm(ValueTerm { joint: i, kind: joint.kind, term: Term::OFFSET });
+                    let shift = Parameter::ValueTerm(ValueTerm { joint: i, kind: joint.kind, term: Term::OFFSET });
                     let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];
                     let dim = free.model().columns().len();
                     free.model().target_twists(&chain, 0, &mut twists[..dim]);
@@ -255,10 +247,8 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                     shift.model().target_twists(&chain, 0, &mut twists[..1]);
                     let (v, w) = twists[0];
                     let column = seen * literal.offset_columns[i];
-                    worst = larger_or_nan(
-                        worst,
-                        (Twist::new(v, w).to_vector() - column).norm() / column.norm().max(1.0),
-                    );
+                    worst =
+                        larger_or_nan(worst, (Twist::new(v, w).to_vector() - column).norm() / column.norm().max(1.0));
                 }
             }
         }
@@ -270,12 +260,9 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
 /// Random configurations within the robot's limits.
 fn within_limits(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
     let mut generator = ChaCha8Rng::seed_from_u64(2009);
-    let mut draw = |limits: JointLimits| {
-        limits.lower + (limits.upper - limits.lower) * random::uniform_number(&mut generator)
-    };
-    (0..count)
-        .map(|_| robot.joints.iter().filter_map(|joint| joint.limits).map(&mut draw).collect())
-        .collect()
+    let mut draw =
+        |limits: JointLimits| limits.lower + (limits.upper - limits.lower) * random::uniform_number(&mut generator);
+    (0..count).map(|_| robot.joints.iter().filter_map(|joint| joint.limits).map(&mut draw).collect()).collect()
 }
 
 /// Rank and columns on 60 configurations. Prints the last counted singular value and the first uncounted one, as shares of the largest.
@@ -334,8 +321,7 @@ fn free_screws_are_elementary_in_the_axis_frame() {
         let literal = PaperMatrix::new(&robot, &values);
         for (i, joint) in robot.joints.iter().enumerate() {
             let before = robot.motion(&values[..i]) * estimate.base_from_axis[i];
-            let free =
-                before.inverse().adjoint() * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
+            let free = before.inverse().adjoint() * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
             let (sine, cosine) = values[i].sin_cos();
             let versine = 1.0 - cosine;
             let turning = Matrix3::new(sine, -versine, 0.0, versine, sine, 0.0, 0.0, 0.0, values[i]);

@@ -1,8 +1,6 @@
 //! Requirements on the reproduction of lou2009, and its determinism.
 
-use poecal_lou2009::{
-    ElbowRun, MeasurementKind, PaperFormulation, Reproduction, ReproductionOptions, lou2009,
-};
+use poecal_lou2009::{ElbowRun, MeasurementKind, PaperFormulation, Reproduction, ReproductionOptions, lou2009};
 use poecal_testing::largest::larger_or_nan;
 
 const FEW: ReproductionOptions = ReproductionOptions { trials: 60, starts: 20, seed: 1 };
@@ -17,8 +15,7 @@ fn find_exact_run(
         .runs
         .iter()
         .find(|run| {
-            (run.formulation, run.measurement, run.offsets_in_truth, run.noise)
-                == (formulation, seen, offsets, false)
+            (run.formulation, run.measurement, run.offsets_in_truth, run.noise) == (formulation, seen, offsets, false)
         })
         .unwrap()
 }
@@ -186,8 +183,7 @@ fn lengths_and_directions_are_told_apart() {
         let run = find_exact_run(&found, PaperFormulation::Adjoint, seen, false);
         let largest = |part: std::ops::Range<usize>| {
             let rows = found.screws.iter();
-            rows.flat_map(|row| part.clone().map(|k| (of(row)[k] - row.prescribed[k]).abs()))
-                .fold(0.0, larger_or_nan)
+            rows.flat_map(|row| part.clone().map(|k| (of(row)[k] - row.prescribed[k]).abs())).fold(0.0, larger_or_nan)
         };
         // The run takes the true screws from their frames, the table as they are: rounding of a number of up to 1 m.
         assert!((run.screw_error_max_v_m - largest(0..3)).abs() < 1e-15);
@@ -207,9 +203,7 @@ fn lengths_and_directions_are_told_apart() {
         .iter()
         .filter(|run| run.formulation == PaperFormulation::Adjoint && run.offsets_in_truth && !run.noise)
     {
-        assert!(
-            (run.screw_error_max_v_m - v).abs() < 1e-12 && (run.screw_error_max_omega - omega).abs() < 1e-12
-        );
+        assert!((run.screw_error_max_v_m - v).abs() < 1e-12 && (run.screw_error_max_omega - omega).abs() < 1e-12);
         assert_eq!(run.screw_error_max, run.screw_error_max_v_m.max(run.screw_error_max_omega));
     }
 }

@@ -72,9 +72,8 @@ fn every_plot_is_well_formed_and_says_what_it_is() {
             assert_eq!(root.attribute("role"), Some("img"), "{name}");
             for child in ["title", "desc"] {
                 assert!(
-                    root.children()
-                        .any(|node| node.has_tag_name((root.tag_name().namespace().unwrap(), child))
-                            && node.text().is_some()),
+                    root.children().any(|node| node.has_tag_name((root.tag_name().namespace().unwrap(), child))
+                        && node.text().is_some()),
                     "{name}"
                 );
             }
@@ -112,9 +111,8 @@ fn claims_stand_in_both_forms() {
     let found = findings();
     let html = text(&found, "report.html");
     let markdown = text(&found, "report.md");
-    let escaped_html = |text: &str| {
-        text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-    };
+    let escaped_html =
+        |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
     let escaped_markdown = |text: &str| text.replace('|', r"\|").replace('<', r"\<").replace('*', r"\*");
     for claim in &found.claims {
         for words in [&claim.claim, &claim.paper, &claim.measured, &claim.criterion] {
@@ -125,8 +123,7 @@ fn claims_stand_in_both_forms() {
     // Findings that the paper leaves out are in a table of their own.
     for text in [&html, &markdown] {
         let at = |words: &str| text.find(words).unwrap();
-        let (said, left_out) =
-            (at("Table 1. What the paper says."), at("Table 2. What the paper leaves out."));
+        let (said, left_out) = (at("Table 1. What the paper says."), at("Table 2. What the paper leaves out."));
         assert!(said < at("Offsets add no rank") && at("Offsets add no rank") < left_out);
         assert!(left_out < at("The components of η are redundant."));
     }
@@ -134,10 +131,7 @@ fn claims_stand_in_both_forms() {
     assert!(markdown.contains(r"Text \| with \<markup> &"));
     // On a narrow screen each cell of such a table is labelled.
     assert!(html.contains("<td data-label=\"holds\">yes</td>"));
-    assert!(
-        html.contains("made &amp; up")
-            && markdown.contains("    poecal reproduce lou2009 --out \"made & up\"")
-    );
+    assert!(html.contains("made &amp; up") && markdown.contains("    poecal reproduce lou2009 --out \"made & up\""));
     for words in ["4 of 5 statements hold", "4 iterations to 2.0e-13 mm from 20 poses"] {
         assert!(html.contains(words) && markdown.contains(words), "{words}");
     }
@@ -164,9 +158,7 @@ fn tables_have_equal_rows() {
 #[test]
 fn the_page_loads_nothing() {
     let html = text(&findings(), "report.html").replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
-    for word in
-        ["http:", "https:", "<script", "<link", "<img", "src=", "href=", "url(", "@import", "javascript"]
-    {
+    for word in ["http:", "https:", "<script", "<link", "<img", "src=", "href=", "url(", "@import", "javascript"] {
         assert!(!html.contains(word), "{word}");
     }
     for tag in ["table", "figure", "svg", "div", "tr", "td", "th", "p", "g"] {
@@ -214,8 +206,7 @@ fn a_second_run_replaces_the_first_and_leaves_other_files() {
     assert!(error.to_string().contains("--force"), "{error}");
     let fewer = reproduction_files(&empty_reproduction()).unwrap();
     write_reproduction(place(ExistingFiles::Replaced).unwrap(), &fewer).unwrap();
-    let names =
-        std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let names = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = names.filter(|name| name != "mine.svg").collect();
     names.sort();
     let mut expected: Vec<String> = fewer.into_iter().map(|(name, _)| name).collect();
@@ -276,10 +267,7 @@ fn words_follow_the_numbers() {
     };
     // Made-up iterations grow by one from formulation to formulation, and shares of starts fall.
     let before = verdicts(&found);
-    assert!(
-        before.contains("(`screw`) are as good") && before.contains("these starts show no difference"),
-        "{before}"
-    );
+    assert!(before.contains("(`screw`) are as good") && before.contains("these starts show no difference"), "{before}");
     assert!(before.contains("From poses, there are too few trials to decide"), "{before}");
     for row in &mut found.efficiency {
         row.ratio_sigma = 1e-4;

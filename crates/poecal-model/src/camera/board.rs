@@ -44,8 +44,7 @@ impl Board {
     pub fn transposed(&self) -> Option<Self> {
         let [first, second, ..] = self.points.as_slice() else { return None };
         let along = second - first;
-        let on_line =
-            |point: &Vector3<f64>| (point - first).cross(&along).norm() < 1e-6 * along.norm_squared();
+        let on_line = |point: &Vector3<f64>| (point - first).cross(&along).norm() < 1e-6 * along.norm_squared();
         let columns = self.points.iter().take_while(|point| on_line(point)).count();
         let rows = self.points.len() / columns.max(1);
         if columns * rows != self.points.len() || rows < 2 || columns == rows {
@@ -67,8 +66,7 @@ impl Board {
         let middle = middle(&self.points);
         let radius = self.radius_m();
         let mirrored = self.points.iter().zip(self.points.iter().rev());
-        let is_turned =
-            mirrored.clone().all(|(one, other)| ((one + other) * 0.5 - middle).norm() < 1e-6 * radius);
+        let is_turned = mirrored.clone().all(|(one, other)| ((one + other) * 0.5 - middle).norm() < 1e-6 * radius);
         if dimensions(&self.points) != 2 || !is_turned {
             return None;
         }

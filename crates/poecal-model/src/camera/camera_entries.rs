@@ -50,10 +50,7 @@ impl BoardEntry {
             name: name.clone(),
             place_mm: [0, 1, 2].map(|axis| 1e3 * point[axis]),
         };
-        BoardEntry {
-            name: board.name.clone(),
-            points: board.names.iter().zip(&board.points).map(point).collect(),
-        }
+        BoardEntry { name: board.name.clone(), points: board.names.iter().zip(&board.points).map(point).collect() }
     }
 
     /// Board of the entry.

@@ -45,8 +45,7 @@ const UNDETERMINED: f64 = 1e-12;
 
 impl CommonError {
     /// Corners without a shared error.
-    pub const NONE: CommonError =
-        CommonError { shift_m: 0.0, turn_rad: 0.0, about: Centre::Board, corners: 1.0 };
+    pub const NONE: CommonError = CommonError { shift_m: 0.0, turn_rad: 0.0, about: Centre::Board, corners: 1.0 };
     /// Smallest standard deviation that is sought, m and rad.
     pub const FINEST: f64 = 1e-6;
 
@@ -71,12 +70,7 @@ impl CommonError {
     /// Maximum-likelihood estimate, beginning from this one. Each pose has the expected squares of its deviation from the true one (m, rad) and
     /// the information of its corners; a fit has used `unknowns` degrees of freedom beside. Returns `-2 log L` with it.
     #[must_use]
-    pub fn estimate_likely(
-        &self,
-        seen: &[(Matrix6<f64>, Matrix6<f64>)],
-        unknowns: f64,
-        length_m: f64,
-    ) -> (Self, f64) {
+    pub fn estimate_likely(&self, seen: &[(Matrix6<f64>, Matrix6<f64>)], unknowns: f64, length_m: f64) -> (Self, f64) {
         let roots: Vec<(Matrix6<f64>, Matrix6<f64>)> = seen
             .iter()
             .map(|(information, squares)| {
@@ -232,8 +226,7 @@ mod tests {
                 turn += (found.turn_rad / truth.turn_rad).ln() / SESSIONS as f64;
                 times += (found.corners / corners).ln() / SESSIONS as f64;
                 let whitening = truth.whitening(&information, length_m);
-                let squares =
-                    seen.iter().map(|(_, it)| (whitening * it * whitening.transpose()).trace()).sum::<f64>();
+                let squares = seen.iter().map(|(_, it)| (whitening * it * whitening.transpose()).trace()).sum::<f64>();
                 variance += squares / (6.0 * seen.len() as f64) / SESSIONS as f64;
             }
             println!(

@@ -118,10 +118,7 @@ mod tests {
         let tilted: Vec<FlatView> =
             [[0.6, 0.1, 0.0], [-0.5, 0.4, 0.7], [0.2, -0.6, 1.5], [0.4, 0.5, -0.4]].map(view).into();
         let found = guessed_lens([1920, 1200], &tilted).unwrap();
-        println!(
-            "focal length {:.0} px of 1500, with a distortion of -0.1 and a centre 15 px off",
-            found.focal()
-        );
+        println!("focal length {:.0} px of 1500, with a distortion of -0.1 and a centre 15 px off", found.focal());
         // The guess is a start: the assumptions on distortion and centre cost some percent of the focal length.
         assert!((found.focal() / 1500.0 - 1.0).abs() < 0.1);
         let parallel: Vec<FlatView> = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(view).into();

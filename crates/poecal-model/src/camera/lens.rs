@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 pub const LENS_NUMBERS: usize = 12;
 
 /// Names of the numbers of a lens, in the order of their derivatives.
-pub const LENS_NAMES: [&str; LENS_NUMBERS] =
-    ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
+pub const LENS_NAMES: [&str; LENS_NUMBERS] = ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
 
 /// Model of the deviation of rays from those of a pinhole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -239,8 +238,7 @@ fn turns_back(&[k1, k2, k3, k4, k5, k6]: &[f64; 6], s: f64) -> bool {
             let s = s * (part as f64 / PARTS as f64).powi(2);
             let above = 1.0 + s * (k1 + s * (k2 + s * k3));
             let below = 1.0 + s * (k4 + s * (k5 + s * k6));
-            let slope =
-                k1 + s * (2.0 * k2 + s * 3.0 * k3) - above / below * (k4 + s * (2.0 * k5 + s * 3.0 * k6));
+            let slope = k1 + s * (2.0 * k2 + s * 3.0 * k3) - above / below * (k4 + s * (2.0 * k5 + s * 3.0 * k6));
             below <= 0.0 || above / below + 2.0 * s * slope / below <= 0.0
         })
 }
@@ -248,8 +246,7 @@ fn turns_back(&[k1, k2, k3, k4, k5, k6]: &[f64; 6], s: f64) -> bool {
 /// Ray of an image position, by Newton's method from the axis outward.
 fn undistort(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
     let mut slopes = place;
-    let miss =
-        |slopes: Vector2<f64>| brown(k, slopes.x, slopes.y).map(|bent| (bent.place - place, bent.by_ray));
+    let miss = |slopes: Vector2<f64>| brown(k, slopes.x, slopes.y).map(|bent| (bent.place - place, bent.by_ray));
     // A start beyond the turn is brought back into the field of view.
     for _ in 0..NEWTON {
         if miss(slopes).is_some() {
@@ -260,8 +257,7 @@ fn undistort(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
     for _ in 0..NEWTON {
         let (error, slope) = miss(slopes)?;
         let determinant = slope.determinant();
-        let inverse =
-            Matrix2::new(slope[(1, 1)], -slope[(0, 1)], -slope[(1, 0)], slope[(0, 0)]) / determinant;
+        let inverse = Matrix2::new(slope[(1, 1)], -slope[(0, 1)], -slope[(1, 0)], slope[(0, 0)]) / determinant;
         let mut step = inverse * error;
         // The step is halved until it stays on this side of the turn and is nearer.
         let mut is_nearer = false;
@@ -349,8 +345,8 @@ mod tests {
                 let h = 1e-6;
                 for k in 0..3 {
                     let step = Vector3::ith(k, h);
-                    let slope = (lens.pixel(&(point + step)).unwrap() - lens.pixel(&(point - step)).unwrap())
-                        / (2.0 * h);
+                    let slope =
+                        (lens.pixel(&(point + step)).unwrap() - lens.pixel(&(point - step)).unwrap()) / (2.0 * h);
                     worst = worst.max((slope - found.by_point.column(k)).norm() / 1e3);
                 }
                 let numbers = lens.numbers();
@@ -383,8 +379,7 @@ mod tests {
         }
         println!("pixels of rays of pixels: {worst:.1e} px");
         assert!(worst < 1e-6, "{worst:e}");
-        let strong =
-            Lens { distortion: Distortion::Brown([-0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ..lenses()[0] };
+        let strong = Lens { distortion: Distortion::Brown([-0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), ..lenses()[0] };
         // r (1 - 0.3 r²) turns at r² = 1/0.9.
         assert!(strong.pixel(&Vector3::new(1.05, 0.0, 1.0)).is_some());
         assert_eq!(strong.pixel(&Vector3::new(1.06, 0.0, 1.0)), None);

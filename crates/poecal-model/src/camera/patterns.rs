@@ -14,8 +14,7 @@ fn check_counts(what: &str, [columns, rows]: [usize; 2], least: usize) -> Result
     if [columns, rows].iter().all(|it| (least..=MOST).contains(it)) {
         return Ok(());
     }
-    let message =
-        format!("found a board of {columns} × {rows} {what}, expected {least} to {MOST} along each side");
+    let message = format!("found a board of {columns} × {rows} {what}, expected {least} to {MOST} along each side");
     Err(Error::new(ErrorKind::Option, message))
 }
 
@@ -44,16 +43,10 @@ impl Board {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if it has fewer than three dots along a side (two of an asymmetric one), or no size.
-    pub fn circles(
-        name: &str,
-        [columns, rows]: [usize; 2],
-        pitch_m: f64,
-        is_asymmetric: bool,
-    ) -> Result<Self> {
+    pub fn circles(name: &str, [columns, rows]: [usize; 2], pitch_m: f64, is_asymmetric: bool) -> Result<Self> {
         check_counts("dots", [columns, rows], if is_asymmetric { 2 } else { 3 })?;
         check_length("a pitch", pitch_m)?;
-        let along =
-            move |column: usize, row: usize| if is_asymmetric { 2 * column + row % 2 } else { column };
+        let along = move |column: usize, row: usize| if is_asymmetric { 2 * column + row % 2 } else { column };
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| [along(column, row), row]));
         Ok(grid(name, "dot", places, pitch_m))
     }

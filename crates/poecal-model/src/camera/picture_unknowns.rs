@@ -175,8 +175,7 @@ impl PictureUnknowns {
         let count = self.count();
         let mut mixed = Matrix6xX::zeros(count);
         let mut by_pose = Vector6::zeros();
-        let parts: Vec<&UnknownNumbers> =
-            self.parts.iter().filter(|part| part.is_of(camera, board)).collect();
+        let parts: Vec<&UnknownNumbers> = self.parts.iter().filter(|part| part.is_of(camera, board)).collect();
         let shape = self.boards.get(board).map(BoardExtent::from_board);
         let mut columns: Vec<(usize, Vector2<f64>)> = Vec::new();
         for corner in view.corners.iter().filter(|corner| corner.weight > 0.0) {
@@ -271,21 +270,15 @@ impl PictureUnknowns {
             PictureUnknown::Lens(at) => {
                 let place = part.places.get(k).copied().unwrap_or(0);
                 let given = self.cameras.get(at).map_or(0.0, |it| it.lens.numbers()[place]);
-                let is_fisheye = self
-                    .cameras
-                    .get(at)
-                    .is_some_and(|it| matches!(it.lens.distortion, Distortion::Fisheye(_)));
-                let name =
-                    if is_fisheye && place >= 4 { FISHEYE_NAMES[place - 4] } else { LENS_NAMES[place] };
+                let is_fisheye =
+                    self.cameras.get(at).is_some_and(|it| matches!(it.lens.distortion, Distortion::Fisheye(_)));
+                let name = if is_fisheye && place >= 4 { FISHEYE_NAMES[place - 4] } else { LENS_NAMES[place] };
                 (format!("lens.{}.{name}", camera(at)), if place < 4 { "px" } else { "" }, given)
             }
             PictureUnknown::Board(at) => {
-                let (name, unit, given) = [
-                    ("scale_x", "", 1.0),
-                    ("scale_y", "", 1.0),
-                    ("bend_x", "mm", 0.0),
-                    ("bend_y", "mm", 0.0),
-                ][k.min(3)];
+                let (name, unit, given) =
+                    [("scale_x", "", 1.0), ("scale_y", "", 1.0), ("bend_x", "mm", 0.0), ("bend_y", "mm", 0.0)]
+                        [k.min(3)];
                 (format!("board.{}.{name}", self.board_name(at)), unit, given)
             }
             PictureUnknown::Markers(at) => {
@@ -329,8 +322,7 @@ impl UnknownNumbers {
         }
         let on_board: Matrix2x3<f64> = seen.by_point * pose.rotation;
         let at = corner.point as usize;
-        let (PictureUnknown::Lens(board) | PictureUnknown::Board(board) | PictureUnknown::Markers(board)) =
-            self.of;
+        let (PictureUnknown::Lens(board) | PictureUnknown::Board(board) | PictureUnknown::Markers(board)) = self.of;
         let point = given.get(board).and_then(|it| it.points.get(at));
         let Some((shape, point)) = shape.zip(point) else { return };
         self.moves(at, (point, shape), |own, way, prior| out.push((own, on_board * way * prior)));
@@ -445,8 +437,7 @@ mod tests {
                     worst = worst.max((moved - follow.column(k)).norm() / follow.column(k).norm().max(1e-4));
                 } else {
                     // Half the squares decrease by the gradient.
-                    worst_pull =
-                        worst_pull.max((own.pull[k] + 0.25 * (more - less) / 1e-2).abs() / own.pull.amax());
+                    worst_pull = worst_pull.max((own.pull[k] + 0.25 * (more - less) / 1e-2).abs() / own.pull.amax());
                 }
             }
         }

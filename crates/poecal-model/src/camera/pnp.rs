@@ -70,18 +70,13 @@ impl Quadric {
     }
 
     /// Minimum that is reached from a start, by Levenberg-Marquardt on the rotation; `None` if it nears one that is known.
-    fn find_minimum(
-        &self,
-        start: Matrix3<f64>,
-        known: &[(f64, Matrix3<f64>)],
-    ) -> Option<(f64, Matrix3<f64>)> {
+    fn find_minimum(&self, start: Matrix3<f64>, known: &[(f64, Matrix3<f64>)]) -> Option<(f64, Matrix3<f64>)> {
         let (mut turn, mut cost, mut damping) = (start, self.cost(&start), 1e-3);
         let scale = self.form.trace() / 9.0;
         for _ in 0..STEPS {
             let r = numbers(&turn);
-            let slopes = SMatrix::<f64, 9, 3>::from_columns(
-                &[0, 1, 2].map(|k| numbers(&(hat(&Vector3::ith(k, 1.0)) * turn))),
-            );
+            let slopes =
+                SMatrix::<f64, 9, 3>::from_columns(&[0, 1, 2].map(|k| numbers(&(hat(&Vector3::ith(k, 1.0)) * turn))));
             let gradient = slopes.transpose() * self.form * r;
             // The second derivative of the rotation is included: with it the minimum is a minimum, and not a saddle.
             let mut curvature: Matrix3<f64> = slopes.transpose() * self.form * slopes;
@@ -109,9 +104,8 @@ impl Quadric {
                 if step.norm() < 1e-10 {
                     break;
                 }
-                let is_known = |(_, known): &(f64, Matrix3<f64>)| {
-                    rotation::log(&(known * turn.transpose())).norm() < SAME
-                };
+                let is_known =
+                    |(_, known): &(f64, Matrix3<f64>)| rotation::log(&(known * turn.transpose())).norm() < SAME;
                 if step.norm() < 0.1 * SAME && known.iter().any(is_known) {
                     return None;
                 }
@@ -132,8 +126,7 @@ fn inverse(matrix: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let size = matrix.trace() / 3.0;
     let minor = matrix[(0, 0)] * matrix[(1, 1)] - matrix[(0, 1)] * matrix[(1, 0)];
     let is_definite = matrix[(0, 0)] > 0.0 && minor > 0.0 && determinant > 1e-14 * size * size * size;
-    is_definite
-        .then(|| Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]).transpose() / determinant)
+    is_definite.then(|| Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]).transpose() / determinant)
 }
 
 /// `R P` as a linear function of the rows of R.

@@ -52,11 +52,7 @@ impl SightingInput<'_> {
             .filter(|(cost, _)| *cost <= WORSE * WORSE * best.max(1.0))
             .map(|(_, pose)| pose)
             .collect();
-        if poses.is_empty() {
-            Err("no pose in front of the camera fits its corners".to_owned())
-        } else {
-            Ok(poses)
-        }
+        if poses.is_empty() { Err("no pose in front of the camera fits its corners".to_owned()) } else { Ok(poses) }
     }
 
     /// A flat board tilted by as much in the opposite direction: its normal is mirrored at the line of sight, its middle stays.

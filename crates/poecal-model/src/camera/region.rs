@@ -14,8 +14,7 @@ pub struct Region {
 }
 
 /// Keys of the numbers of a region.
-pub const KEYS: [&str; 6] =
-    ["roi.x_offset", "roi.y_offset", "roi.width", "roi.height", "binning_x", "binning_y"];
+pub const KEYS: [&str; 6] = ["roi.x_offset", "roi.y_offset", "roi.width", "roi.height", "binning_x", "binning_y"];
 
 impl Region {
     /// A region by the numbers of its keys, in the order of [`KEYS`]; 0 of a key that is absent.
@@ -45,9 +44,7 @@ impl Region {
         let Region { offset_px, size_px, binning } = *self;
         let is_part = size_px[0] > 0.0;
         let whole = lens.size_px.map(|it| it.map(f64::from));
-        if let Some(whole) =
-            whole.filter(|whole| is_part && (0..2).any(|k| offset_px[k] + size_px[k] > whole[k]))
-        {
+        if let Some(whole) = whole.filter(|whole| is_part && (0..2).any(|k| offset_px[k] + size_px[k] > whole[k])) {
             let ([width, height], [x, y], [most_x, most_y]) = (size_px, offset_px, whole);
             return Err(format!(
                 "found a region `roi` of {width} × {height} pixels from ({x}, {y}) on, expected one inside the sensor of {most_x} × {most_y}"
@@ -70,8 +67,7 @@ impl Region {
         if binning != [1.0; 2] {
             done.push(format!("the binning {} × {}", binning[0], binning[1]));
         }
-        let size =
-            seen.size_px.map_or(String::new(), |[width, height]| format!(" of {width} × {height} pixels"));
+        let size = seen.size_px.map_or(String::new(), |[width, height]| format!(" of {width} × {height} pixels"));
         let ([fx, fy], [cx, cy]) = (seen.focal_px, seen.centre_px);
         let words = format!(
             "took the lens as that of pictures{size}, by {}: fx {fx:.2}, fy {fy:.2}, cx {cx:.2}, cy {cy:.2} px",

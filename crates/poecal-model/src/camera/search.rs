@@ -6,8 +6,8 @@
 use nalgebra::{DMatrix, DVector, Matrix6xX};
 
 use super::{
-    Board, Lens, Picture, PictureInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures,
-    SightingInput, is_flat_sheet,
+    Board, Lens, Picture, PictureInformation, PictureNumber, PictureUnknown, PictureUnknowns, Pictures, SightingInput,
+    is_flat_sheet,
 };
 use poecal_arm::lie::Pose;
 use poecal_numerics::linalg;
@@ -119,11 +119,7 @@ impl LensSearch {
             found.push(sighting.as_ref().map_or(*pose, |it| it.camera_from_board));
             let Some(sighting) = sighting else { continue };
             (squares, freedom) = (squares + sighting.cost, freedom + sighting.freedom);
-            picture
-                .corners
-                .iter_mut()
-                .zip(&sighting.weights)
-                .for_each(|(corner, weight)| corner.weight = *weight);
+            picture.corners.iter_mut().zip(&sighting.weights).for_each(|(corner, weight)| corner.weight = *weight);
         }
         let freedom = freedom.max(1.0);
         // Corners with a stated noise are never better than that.
@@ -169,12 +165,7 @@ fn view<'a>(pictures: &'a Pictures, bent: &'a [Board], picture: &'a Picture) -> 
 }
 
 /// Ratio of the squared gradients of pictures to their expectation by the information; 1 if it exceeds 1 by no more than chance.
-fn spread(
-    information: &DMatrix<f64>,
-    squared: &DMatrix<f64>,
-    expected: &DMatrix<f64>,
-    pictures: usize,
-) -> f64 {
+fn spread(information: &DMatrix<f64>, squared: &DMatrix<f64>, expected: &DMatrix<f64>, pictures: usize) -> f64 {
     let count = information.nrows();
     let Some(factor) = linalg::cholesky(information.as_slice(), count, 0.0) else { return 1.0 };
     let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));

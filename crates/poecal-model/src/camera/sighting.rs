@@ -84,9 +84,8 @@ impl<'a> SightingInput<'a> {
     /// Points of the corners with their rays.
     #[must_use]
     pub fn rays(&self) -> Vec<(Vector3<f64>, Vector3<f64>)> {
-        let of = |corner: &Corner| {
-            Some((*self.board.points.get(corner.point as usize)?, self.lens.ray(&corner.pixel)?))
-        };
+        let of =
+            |corner: &Corner| Some((*self.board.points.get(corner.point as usize)?, self.lens.ray(&corner.pixel)?));
         self.corners.iter().filter_map(of).collect()
     }
 
@@ -205,10 +204,8 @@ impl<'a> SightingInput<'a> {
 
     fn sighting_at(&self, pose: Pose, information: Matrix6<f64>, cost: f64, weights: Vec<f64>) -> Sighting {
         let errors = self.errors(&pose);
-        let squares = errors
-            .iter()
-            .zip(&weights)
-            .map(|(error, weight)| weight * error.map_or(0.0, |it| it.norm_squared()));
+        let squares =
+            errors.iter().zip(&weights).map(|(error, weight)| weight * error.map_or(0.0, |it| it.norm_squared()));
         Sighting {
             camera_from_board: pose,
             information,

@@ -69,8 +69,7 @@ mod tests {
 
     #[test]
     fn turns_about_one_axis_are_about_no_other() {
-        let about =
-            |axis: Vector3<f64>, angle: f64| Pose::new(rotation::exp(&(axis * angle)), Vector3::zeros());
+        let about = |axis: Vector3<f64>, angle: f64| Pose::new(rotation::exp(&(axis * angle)), Vector3::zeros());
         let fixed = about(Vector3::new(0.2, -0.5, 0.3), 1.0);
         let axis = Vector3::new(0.6, 0.0, 0.8);
         let poses: Vec<Pose> = (0..20).map(|k| about(axis, 0.1 * f64::from(k)) * fixed).collect();

@@ -35,9 +35,7 @@ impl DhConvention {
         match self {
             DhConvention::Standard => "Rz(theta) Tz(d) Tx(a) Rx(alpha)",
             DhConvention::Modified => "Rx(alpha) Tx(a) Rz(theta) Tz(d)",
-            DhConvention::Hayati => {
-                "dh: Rz(theta) Tz(d) Tx(a) Rx(alpha); hayati: Rz(theta) Tx(a) Rx(alpha) Ry(beta)"
-            }
+            DhConvention::Hayati => "dh: Rz(theta) Tz(d) Tx(a) Rx(alpha); hayati: Rz(theta) Tx(a) Rx(alpha) Ry(beta)",
         }
     }
 }

@@ -64,8 +64,7 @@ impl AxisFrames {
     pub fn end_at_tip(&mut self) {
         if let Some(last) = self.joints.last_mut() {
             let tip = &self.last_from_tip;
-            let turn = (tip.rotation[(1, 0)] - tip.rotation[(0, 1)])
-                .atan2(tip.rotation[(0, 0)] + tip.rotation[(1, 1)]);
+            let turn = (tip.rotation[(1, 0)] - tip.rotation[(0, 1)]).atan2(tip.rotation[(0, 0)] + tip.rotation[(1, 1)]);
             let along = Pose::new(rotation::about(2, turn), Vector3::new(0.0, 0.0, tip.translation.z));
             *last = *last * along;
             self.last_from_tip = along.inverse() * self.last_from_tip;
@@ -90,8 +89,7 @@ impl AxisFrames {
             } else {
                 // The new zero is the old reading's.
                 let by = joint.reading.offset;
-                own.limits =
-                    joint.limits.map(|it| JointLimits { lower: it.lower - by, upper: it.upper - by });
+                own.limits = joint.limits.map(|it| JointLimits { lower: it.lower - by, upper: it.upper - by });
                 own.reading.name.clone_from(&joint.reading.name);
             }
             joints.push(own);
@@ -118,8 +116,7 @@ pub(crate) fn along_axis(joint: &Joint) -> Pose {
         JointKind::Prismatic => translation,
     };
     let (z, direction) = (turn.column(2).into_owned(), joint.screw.direction());
-    let least =
-        if (z - direction).norm() > ALONG { rotation::shortest_arc(&z, &direction) * turn } else { turn };
+    let least = if (z - direction).norm() > ALONG { rotation::shortest_arc(&z, &direction) * turn } else { turn };
     Pose::new(least, origin)
 }
 

@@ -61,11 +61,9 @@ impl Dataset {
             })
         };
         let window = same * (0..self.reading_names().len()).map(weight).sum::<f64>();
-        let mut order: Vec<(C, (f64, f64), u32)> =
-            rows.iter().map(|&row| (class(row), keys(row), row)).collect();
+        let mut order: Vec<(C, (f64, f64), u32)> = rows.iter().map(|&row| (class(row), keys(row), row)).collect();
         threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)).then(a.2.cmp(&b.2)));
-        let is_same =
-            |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
+        let is_same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
         // Both sums of rows that are alike differ by no more than the window, but for rounding.
         let wide = window * (1.0 + 1e-6);
         // Indices of the rows like that at `first`, which is the first.
@@ -104,8 +102,7 @@ impl Dataset {
     pub fn group_repeated(&self, rows: &[u32]) -> Vec<Vec<u32>> {
         let bits = |row: u32| self.of_joints(row).iter().map(|value| value.to_bits());
         // A hash: only rows with equal hashes are compared.
-        let mixed =
-            |row: u32| bits(row).fold(0, |sum: u64, bits| (sum ^ bits).wrapping_mul(MIXER).rotate_left(29));
+        let mixed = |row: u32| bits(row).fold(0, |sum: u64, bits| (sum ^ bits).wrapping_mul(MIXER).rotate_left(29));
         let mut mixtures: Vec<(u64, u32)> = rows.iter().map(|&row| (mixed(row), row)).collect();
         threads::sort_by(&mut mixtures, Ord::cmp);
         let mut groups = Vec::new();

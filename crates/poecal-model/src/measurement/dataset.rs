@@ -153,8 +153,7 @@ impl Dataset {
     /// [`ErrorKind::Measurement`].
     pub fn check(&self) -> Result<()> {
         let files = self.files.len().max(1);
-        let further =
-            u32::try_from(self.further_readings.len() / self.reading_names.len().max(1)).unwrap_or(u32::MAX);
+        let further = u32::try_from(self.further_readings.len() / self.reading_names.len().max(1)).unwrap_or(u32::MAX);
         let fits = self.readings.len() == self.reading_names.len() * self.len()
             && (self.ids.is_empty() || self.ids.len() == self.len())
             && self.observations.iter().all(|row| row.target < self.targets.len())
@@ -173,11 +172,7 @@ impl Dataset {
                 .filter_map(|row| row.moving)
                 .all(|at| (at as usize) < self.moving.times_s.len())
             && self.observations.iter().all(|row| (row.source.file as usize) < files)
-            && self
-                .pictures
-                .all
-                .iter()
-                .all(|it| (it.row as usize) < self.len() && self.pictures.view(it).is_some());
+            && self.pictures.all.iter().all(|it| (it.row as usize) < self.len() && self.pictures.view(it).is_some());
         if fits {
             return Ok(());
         }
@@ -355,6 +350,5 @@ fn is_finite(numbers: &[f64]) -> bool {
 }
 
 fn not_finite() -> Error {
-    ErrorKind::Measurement
-        .error("found a number that is not finite, expected finite joint readings and measurements")
+    ErrorKind::Measurement.error("found a number that is not finite, expected finite joint readings and measurements")
 }

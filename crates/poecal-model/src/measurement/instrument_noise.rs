@@ -92,8 +92,7 @@ impl InstrumentNoise {
 
 /// Error of a row without a whole position, whose distance is not known.
 fn incomplete_error(data: &Dataset, row: usize, seen: &Measurement) -> Error {
-    let missing =
-        ["x", "y", "z"].into_iter().zip(seen.position_components()).find(|(_, value)| value.is_none());
+    let missing = ["x", "y", "z"].into_iter().zip(seen.position_components()).find(|(_, value)| value.is_none());
     let message = format!(
         "found an empty cell in `{}` beside noise that depends on the distance, expected a whole position: state the noise of such rows in \
          columns sigma_x, sigma_y, sigma_z",

@@ -230,9 +230,7 @@ impl Measurement {
                 rotation::log(&(a.rotation * b.rotation.transpose())).norm()
             }
             (InitialGuess::Up(a), InitialGuess::Up(b))
-            | (InitialGuess::Height { up: Some(a), .. }, InitialGuess::Height { up: Some(b), .. }) => {
-                angle(a, b)
-            }
+            | (InitialGuess::Height { up: Some(a), .. }, InitialGuess::Height { up: Some(b), .. }) => angle(a, b),
             _ => 0.0,
         };
         let are_places = self.position().is_some() && other.position().is_some();

@@ -18,8 +18,7 @@ impl NoiseShape {
         let measured: Vec<f64> = sigmas.into_iter().flatten().collect();
         let mean = (measured.iter().map(|sigma| sigma.ln()).sum::<f64>() / measured.len() as f64).exp();
         let factors = sigmas.map(|sigma| sigma.map_or(0.0, |sigma| mean / sigma));
-        (!measured.is_empty())
-            .then(|| (mean, NoiseShape::of_position(&Matrix3::from_diagonal(&factors.into()))))
+        (!measured.is_empty()).then(|| (mean, NoiseShape::of_position(&Matrix3::from_diagonal(&factors.into()))))
     }
 
     /// Standard deviations of the components of a position, metres, by the σ of all of them: the inverse of [`NoiseShape::by_component`].

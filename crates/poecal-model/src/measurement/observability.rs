@@ -11,8 +11,7 @@ impl Dataset {
     #[must_use]
     pub fn station_word(&self, station: usize) -> &'static str {
         let own = self.observations.iter().filter(|it| it.station == station);
-        let device =
-            |it: &Observation| if it.from.is_some() { Device::Pair } else { it.measurement.device() };
+        let device = |it: &Observation| if it.from.is_some() { Device::Pair } else { it.measurement.device() };
         let mut devices = own.map(device);
         let first = devices.next().unwrap_or(Device::Instrument);
         let found = match devices.all(|device| device == first) {
@@ -77,8 +76,7 @@ impl Dataset {
     /// True if some of these rows are readings of a station whose zero is unknown.
     #[must_use]
     pub fn zero_is_unknown(&self, station: usize, rows: &[u32]) -> bool {
-        let mut own =
-            rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
+        let mut own = rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
         own.any(|it| it.measurement.function().zero_is_unknown)
     }
 
@@ -141,8 +139,7 @@ impl Dataset {
             let parts = components.iter().zip(mean.iter());
             parts.filter_map(|(value, mean)| Some(((*value)? - mean).powi(2))).sum()
         };
-        let (sum, count) =
-            self.positions(rows).map(square).fold((0.0, 0), |(sum, count), it| (sum + it, count + 1));
+        let (sum, count) = self.positions(rows).map(square).fold((0.0, 0), |(sum, count), it| (sum + it, count + 1));
         (sum / f64::from(count.max(1))).sqrt()
     }
 

@@ -35,10 +35,7 @@ pub struct FormulatedMeasurement<'a> {
 impl<'a> FormulatedMeasurement<'a> {
     /// A measurement with the residual of its function, or another one of a frame.
     pub fn new(measurement: &'a Measurement, other: Option<&'static dyn PoseResidual>) -> Self {
-        FormulatedMeasurement {
-            measurement,
-            other: other.and_then(|other| Some((measurement.frame()?, other))),
-        }
+        FormulatedMeasurement { measurement, other: other.and_then(|other| Some((measurement.frame()?, other))) }
     }
 
     /// True if it is that of its function.

@@ -30,8 +30,7 @@ impl Dataset {
         let row = u32::try_from(self.len()).unwrap_or(u32::MAX);
         let mut picture = Picture { row, ..picture };
         let names = self.pictures.cameras.get(picture.camera).zip(self.pictures.boards.get(picture.board));
-        let Some((camera, board)) = names.map(|(camera, board)| (camera.name.clone(), board.name.clone()))
-        else {
+        let Some((camera, board)) = names.map(|(camera, board)| (camera.name.clone(), board.name.clone())) else {
             return Ok(Err("no camera or board".to_owned()));
         };
         match self.pictures.view(&picture).map(|view| view.poses()) {
@@ -121,11 +120,7 @@ impl Dataset {
     pub fn state_picture(&mut self, at: usize, sighting: &Sighting) {
         let Some(picture) = self.pictures.all.get_mut(at) else { return };
         let pose = picture.directed_measurement(&sighting.camera_from_board);
-        picture
-            .corners
-            .iter_mut()
-            .zip(&sighting.weights)
-            .for_each(|(corner, weight)| corner.weight = *weight);
+        picture.corners.iter_mut().zip(&sighting.weights).for_each(|(corner, weight)| corner.weight = *weight);
         let row = picture.row as usize;
         let seen = (&sighting.camera_from_board, sighting.information);
         let whitening = picture_whitening(self.pictures.common, seen, picture.of_camera);

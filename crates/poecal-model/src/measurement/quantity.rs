@@ -354,10 +354,7 @@ impl<T: Serialize> Serialize for MeasuredQuantities<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let is_written = |quantity, value: &Option<T>| value.is_some() || quantity == Quantity::Rotation;
         serializer.collect_map(
-            self.0
-                .iter()
-                .filter(|(quantity, value)| is_written(*quantity, value))
-                .map(|(it, value)| (it.key(), value)),
+            self.0.iter().filter(|(quantity, value)| is_written(*quantity, value)).map(|(it, value)| (it.key(), value)),
         )
     }
 }
@@ -365,8 +362,7 @@ impl<T: Serialize> Serialize for MeasuredQuantities<T> {
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for MeasuredQuantities<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut values: BTreeMap<String, Option<T>> = BTreeMap::deserialize(deserializer)?;
-        let found =
-            MeasuredQuantities(ByQuantity::from_fn(|quantity| values.remove(quantity.key()).flatten()));
+        let found = MeasuredQuantities(ByQuantity::from_fn(|quantity| values.remove(quantity.key()).flatten()));
         if found.0.iter().all(|(_, value)| value.is_none()) {
             return Err(D::Error::custom("missing field `position_mm`"));
         }

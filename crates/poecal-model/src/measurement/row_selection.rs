@@ -90,12 +90,10 @@ impl Dataset {
         };
         let station = |at: usize| stations.get(at).copied().unwrap_or_default();
         let width = other.reading_names.len().max(1);
-        let in_order =
-            other.moving.rates.chunks_exact(width).flat_map(|of| order.iter().map(|&index| of[index]));
+        let in_order = other.moving.rates.chunks_exact(width).flat_map(|of| order.iter().map(|&index| of[index]));
         let moving = MovingRows { rates: in_order.collect(), ..other.moving.clone() };
         self.moving.extend(&moving, station);
-        let lengths =
-            other.lengths.iter().map(|it| KnownLength { stations: it.stations.map(station), ..*it });
+        let lengths = other.lengths.iter().map(|it| KnownLength { stations: it.stations.map(station), ..*it });
         for length in lengths {
             if !self.lengths.contains(&length) {
                 self.lengths.push(length);

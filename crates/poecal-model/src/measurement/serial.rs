@@ -15,8 +15,7 @@ impl Serialize for Measurement {
 impl<'de> Deserialize<'de> for Measurement {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (name, values): (String, MeasuredValues) = Deserialize::deserialize(deserializer)?;
-        let function =
-            find_by_name(&name).ok_or_else(|| D::Error::custom(format!("unknown function `{name}`")))?;
+        let function = find_by_name(&name).ok_or_else(|| D::Error::custom(format!("unknown function `{name}`")))?;
         Ok(Measurement::new(function, &values))
     }
 }

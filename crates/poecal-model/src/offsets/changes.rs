@@ -262,8 +262,7 @@ impl Changes {
             }
             let mut earlier = None;
             for ((joint, _), left) in self.blocks.iter().zip(moved.chunks_exact(3)) {
-                let (Some(entry), Some(direction)) = (found.get_mut(*joint), self.directions.get(*joint))
-                else {
+                let (Some(entry), Some(direction)) = (found.get_mut(*joint), self.directions.get(*joint)) else {
                     continue;
                 };
                 let left = Vector3::new(left[0], left[1], left[2]);

@@ -69,9 +69,7 @@ impl OffsetEquations {
     pub(crate) fn step_by(&self, gradient: &[f64], damping: f64) -> Vec<f64> {
         let n = gradient.len();
         let mut step = vec![0.0; n];
-        for (&value, vector) in
-            self.values.iter().zip(self.vectors.column_iter()).skip(self.open_directions())
-        {
+        for (&value, vector) in self.values.iter().zip(self.vectors.column_iter()).skip(self.open_directions()) {
             let along: f64 = vector.iter().zip(gradient).map(|(a, b)| a * b).sum();
             step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s -= a * along / (value + damping));
         }
@@ -115,8 +113,7 @@ impl<'a> RobotPair<'a> {
     pub(crate) fn undetermined_joints(&self, state: &OffsetState) -> Vec<usize> {
         let normal = self.normal(state);
         let open = normal.open_directions();
-        let part =
-            |joint: usize| normal.vectors.row(joint).iter().take(open).map(|part| part * part).sum::<f64>();
+        let part = |joint: usize| normal.vectors.row(joint).iter().take(open).map(|part| part * part).sum::<f64>();
         (0..state.offsets.len()).filter(|&joint| part(joint).sqrt() > NAMED).collect()
     }
 
@@ -192,8 +189,7 @@ impl<'a> RobotPair<'a> {
             return step;
         }
         let count = state.offsets.len();
-        let scaled: Vec<f64> =
-            self.scales().iter().zip(&state.offsets).map(|(scale, offset)| scale * offset).collect();
+        let scaled: Vec<f64> = self.scales().iter().zip(&state.offsets).map(|(scale, offset)| scale * offset).collect();
         let parts: Vec<Vec<f64>> =
             (0..open).map(|k| normal.vectors.column(k).iter().take(count).copied().collect()).collect();
         // The damping determines motions of the base alone.
@@ -259,10 +255,7 @@ impl<'a> RobotPair<'a> {
             // Chords between the axes of the two frames: for small angles the square of the rotation, and smooth for large ones.
             let weight = self.length_m / SQRT_2;
             for (axis, goal) in home.rotation.column_iter().zip(goal.rotation.column_iter()) {
-                blocks.push((
-                    screws.len(),
-                    ((axis - goal) * weight, by_turn(&-hat(&axis.into_owned()), weight)),
-                ));
+                blocks.push((screws.len(), ((axis - goal) * weight, by_turn(&-hat(&axis.into_owned()), weight))));
             }
         }
         (screws, blocks)
@@ -279,11 +272,7 @@ impl<'a> RobotPair<'a> {
     }
 
     /// Normal equations of some blocks, and the derivatives of their residuals by the scaled unknowns, row by row.
-    pub(crate) fn equations(
-        &self,
-        screws: &[Screw],
-        blocks: &[(usize, ResidualBlock)],
-    ) -> (OffsetEquations, Vec<f64>) {
+    pub(crate) fn equations(&self, screws: &[Screw], blocks: &[(usize, ResidualBlock)]) -> (OffsetEquations, Vec<f64>) {
         let scales = self.scales();
         let n = scales.len();
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());

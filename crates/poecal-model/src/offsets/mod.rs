@@ -122,18 +122,14 @@ fn explain_offsets(
     })
 }
 
-fn remainder(
-    comparison: &RobotPair<'_>,
-    found: &OffsetState,
-) -> (Vec<JointScrewResidual>, Option<HomeResidual>) {
+fn remainder(comparison: &RobotPair<'_>, found: &OffsetState) -> (Vec<JointScrewResidual>, Option<HomeResidual>) {
     let (screws, home) = comparison.move_robot(found);
     let actual = comparison.actual;
     let joints = screws.iter().zip(&actual.joints).map(|(screw, joint)| {
         let (direction, goal) = (screw.direction(), joint.screw.direction());
         let tilt_rad = direction.cross(&goal).norm().atan2(direction.dot(&goal));
         let origin = joint.screw.nearest_point(&joint.frame.translation);
-        let shift_m =
-            (joint.kind == JointKind::Revolute).then(|| (screw.nearest_point(&origin) - origin).norm());
+        let shift_m = (joint.kind == JointKind::Revolute).then(|| (screw.nearest_point(&origin) - origin).norm());
         JointScrewResidual { tilt_rad, shift_m }
     });
     let home = (comparison.options.tip == EndConstraint::Kept).then(|| HomeResidual {

@@ -38,11 +38,6 @@ pub struct OffsetOptions {
 
 impl Default for OffsetOptions {
     fn default() -> Self {
-        OffsetOptions {
-            base: EndConstraint::Kept,
-            tip: EndConstraint::Kept,
-            configurations: CONFIGURATIONS,
-            seed: 1,
-        }
+        OffsetOptions { base: EndConstraint::Kept, tip: EndConstraint::Kept, configurations: CONFIGURATIONS, seed: 1 }
     }
 }

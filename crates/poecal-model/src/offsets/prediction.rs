@@ -46,13 +46,10 @@ impl PredictionSample {
 
     /// Best motion of the tip if it is free, and the errors between the tips of `robot`, moved by `base`, and the actual one.
     pub(crate) fn compare(&self, robot: &Robot, base: &Pose) -> (Pose, TipError) {
-        let tips: Vec<Pose> =
-            self.readings.iter().map(|readings| *base * robot.forward_kinematics(readings)).collect();
+        let tips: Vec<Pose> = self.readings.iter().map(|readings| *base * robot.forward_kinematics(readings)).collect();
         let tip_motion = match self.tip {
             EndConstraint::Kept => Pose::identity(),
-            EndConstraint::Free => {
-                mean(tips.iter().zip(&self.actual).map(|(tip, actual)| tip.inverse() * *actual))
-            }
+            EndConstraint::Free => mean(tips.iter().zip(&self.actual).map(|(tip, actual)| tip.inverse() * *actual)),
         };
         let (mut squares_m2, mut squares_rad2, mut max_m, mut max_rad) = (0.0, 0.0, 0.0_f64, 0.0_f64);
         for (tip, actual) in tips.iter().zip(&self.actual) {
@@ -65,12 +62,8 @@ impl PredictionSample {
             max_rad = max_rad.max(angle_rad);
         }
         let count = tips.len().max(1) as f64;
-        let error = TipError {
-            rms_m: (squares_m2 / count).sqrt(),
-            max_m,
-            rms_rad: (squares_rad2 / count).sqrt(),
-            max_rad,
-        };
+        let error =
+            TipError { rms_m: (squares_m2 / count).sqrt(), max_m, rms_rad: (squares_rad2 / count).sqrt(), max_rad };
         (tip_motion, error)
     }
 }

@@ -29,10 +29,8 @@ pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
     };
     for (index, (joint, &offset)) in equivalent.joints.iter_mut().zip(offsets).enumerate() {
         if !offset.is_finite() {
-            return ErrorKind::Option.refuse(format!(
-                "found the offset {offset} of joint `{}`, expected a finite one",
-                joint.name
-            ));
+            return ErrorKind::Option
+                .refuse(format!("found the offset {offset} of joint `{}`, expected a finite one", joint.name));
         }
         let screw = joint.screw;
         let before = of(&motions, robot.body_before(index));

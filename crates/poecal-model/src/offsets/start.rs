@@ -72,13 +72,7 @@ impl RobotPair<'_> {
 
 /// Value by which `about` brings `moving` nearest to `to`, an axis relative to `origin`; `None` if it does not move it. Directions
 /// decide, and positions if directions do not move: motions of at least `least_motion_m` (metres).
-fn nearest_value(
-    about: &Screw,
-    moving: &Screw,
-    to: &Screw,
-    origin: &Vector3<f64>,
-    least_motion_m: f64,
-) -> Option<f64> {
+fn nearest_value(about: &Screw, moving: &Screw, to: &Screw, origin: &Vector3<f64>, least_motion_m: f64) -> Option<f64> {
     let axis = about.direction();
     let across = |vector: Vector3<f64>, normal: &Vector3<f64>| vector - normal * normal.dot(&vector);
     let angle = |from: Vector3<f64>, to: Vector3<f64>| axis.dot(&from.cross(&to)).atan2(from.dot(&to));

@@ -102,8 +102,7 @@ impl TipFit<'_> {
     }
 
     fn retract(&self, (state, tip): &TipSolution, step: &[f64], share: f64) -> TipSolution {
-        let units: Vec<f64> =
-            step.iter().zip(self.scales()).map(|(step, scale)| share * step / scale).collect();
+        let units: Vec<f64> = step.iter().zip(self.scales()).map(|(step, scale)| share * step / scale).collect();
         let mut rest = units.as_slice();
         let mut take = |is_free: bool, count: usize| {
             let (own, others) = rest.split_at(if is_free { count } else { 0 });

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use poecal_arm::{
-    Arm, ArmModel, GravityTorque, JointValue, MOST_JOINTS, ModelJoint as ArmJoint, NominalJoint, Term,
-    TermArgument, TermCurve, TermFunction, Wave,
+    Arm, ArmModel, GravityTorque, JointValue, MOST_JOINTS, ModelJoint as ArmJoint, NominalJoint, Term, TermArgument,
+    TermCurve, TermFunction, Wave,
 };
 
 use super::{JointLimits, JointTerm, Robot, Statics};
@@ -36,8 +36,7 @@ impl Robot {
         let (model, readings) = self.model_holding(factors, held)?;
         let names = self.reading_names();
         let arm = Arm::from_model(&model).ok_or_else(|| {
-            let names: Vec<&str> =
-                readings.iter().filter_map(|&it| names.get(it)).map(String::as_str).collect();
+            let names: Vec<&str> = readings.iter().filter_map(|&it| names.get(it)).map(String::as_str).collect();
             ErrorKind::Model.error(format!(
                 "not every one of the joints {} moves the tip of robot `{}`",
                 names.join(", "),
@@ -58,8 +57,7 @@ impl Robot {
     fn model_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(ArmModel, Vec<usize>)> {
         let indices = self.reading_indices();
         let path = self.joints_to(self.tip_body());
-        let moving: Vec<usize> =
-            path.iter().copied().filter(|&it| self.joints[it].give_of.is_none()).collect();
+        let moving: Vec<usize> = path.iter().copied().filter(|&it| self.joints[it].give_of.is_none()).collect();
         let mut readings: Vec<usize> = Vec::new();
         for &joint in &moving {
             let is_held = held.iter().any(|it| it.0 == indices[joint]);
@@ -108,8 +106,7 @@ impl Robot {
 
     /// Limits of a reading: those of the joint that is named by it, without placeholders.
     fn limits_of(&self, moving: &[usize], indices: &[usize], reading: usize) -> Option<(f64, f64)> {
-        let joint =
-            moving.iter().map(|&it| (it, &self.joints[it])).find(|(it, _)| indices[*it] == reading)?.1;
+        let joint = moving.iter().map(|&it| (it, &self.joints[it])).find(|(it, _)| indices[*it] == reading)?.1;
         let limits = joint.limits.filter(|it| it.upper - it.lower < JointLimits::PLACEHOLDER_M)?;
         let (low, high) = (limits.lower, limits.upper);
         (joint.reading.multiplier == 1.0 && joint.reading.offset == 0.0).then_some((low, high))
@@ -181,8 +178,7 @@ impl JointValues<'_> {
             value.constant += coefficient * term.function(constant)[0];
             return;
         };
-        let wave =
-            Wave { reading, factor, offset: constant, order: term.number() as f64, cosine: 0.0, sine: 0.0 };
+        let wave = Wave { reading, factor, offset: constant, order: term.number() as f64, cosine: 0.0, sine: 0.0 };
         match term.kind().row().function {
             TermFunction::One => value.constant += coefficient,
             TermFunction::Identity => {
@@ -213,16 +209,11 @@ impl JointValues<'_> {
         for &(term, coefficient) in terms {
             match term.argument() {
                 TermArgument::Masses => of_masses += coefficient,
-                TermArgument::Weight => {
-                    sags.get_mut(term.index()).into_iter().for_each(|it| *it += coefficient)
-                }
+                TermArgument::Weight => sags.get_mut(term.index()).into_iter().for_each(|it| *it += coefficient),
                 TermArgument::Payload => {
                     sags.last_mut().into_iter().for_each(|it| *it += coefficient * self.factor(term));
                 }
-                TermArgument::Nothing
-                | TermArgument::OwnValue
-                | TermArgument::OtherJoint
-                | TermArgument::Factor => {}
+                TermArgument::Nothing | TermArgument::OwnValue | TermArgument::OtherJoint | TermArgument::Factor => {}
             }
         }
         self.statics.as_ref()?.pull(joint, self.moving, &sags, of_masses)

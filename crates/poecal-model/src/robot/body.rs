@@ -114,8 +114,7 @@ impl Robot {
     pub fn places_of_targets(&self) -> impl Fn(Option<&str>) -> (Body, Pose) {
         let tip = self.tip_body();
         let at_tip = self.targets.iter().map(|(name, pose)| (name.as_str(), (tip, self.home * *pose)));
-        let mounted =
-            self.mounted.iter().map(|mount| (mount.name.as_str(), (mount.body, self.base_from(mount))));
+        let mounted = self.mounted.iter().map(|mount| (mount.name.as_str(), (mount.body, self.base_from(mount))));
         let mut known: BTreeMap<&str, (Body, Pose)> = BTreeMap::new();
         for (name, place) in mounted.chain(at_tip) {
             known.entry(name).or_insert(place);

@@ -105,12 +105,14 @@ fn gives(
         CompliantDirections::Tilting => 0,
         CompliantDirections::All => 3,
     };
-    let about = axes.into_iter().take(turning).map(move |(axis, direction)| {
-        (axis.to_owned(), JointKind::Revolute, Screw::revolute(&direction, &pivot))
-    });
-    let along = axes.into_iter().take(sliding).map(|(axis, direction)| {
-        (format!("along_{axis}"), JointKind::Prismatic, Screw::prismatic(&direction))
-    });
+    let about = axes
+        .into_iter()
+        .take(turning)
+        .map(move |(axis, direction)| (axis.to_owned(), JointKind::Revolute, Screw::revolute(&direction, &pivot)));
+    let along = axes
+        .into_iter()
+        .take(sliding)
+        .map(|(axis, direction)| (format!("along_{axis}"), JointKind::Prismatic, Screw::prismatic(&direction)));
     let (name, frame, reading) = (joint.name.clone(), joint.frame, joint.reading.name.clone());
     about.chain(along).map(move |(direction, kind, screw)| Joint {
         frame,

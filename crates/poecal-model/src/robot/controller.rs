@@ -88,8 +88,7 @@ impl Controller {
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
         let reading = |name: String| {
-            let slides =
-                robot.joints.iter().any(|it| it.reading.name == name && it.kind == JointKind::Prismatic);
+            let slides = robot.joints.iter().any(|it| it.reading.name == name && it.kind == JointKind::Prismatic);
             let unit = if slides { "m" } else { "rad" }.to_owned();
             let columns = BTreeMap::from([(name.clone(), ControllerColumn { factor: 1.0, unit })]);
             ControllerReading { reading: name, columns, offset: 0.0 }
@@ -117,9 +116,9 @@ impl Controller {
         match self.readings.iter().find(|it| !is_sound(it)) {
             None => Ok(()),
             Some(reading) => ErrorKind::Model.refuse(format!(
-                    "found a factor or an offset of the reading `{}` that is no number, expected factors other than 0",
-                    reading.reading
-                )),
+                "found a factor or an offset of the reading `{}` that is no number, expected factors other than 0",
+                reading.reading
+            )),
         }
     }
 
@@ -266,11 +265,7 @@ impl ControllerReading {
         let columns = self.columns.iter().map(|(column, it)| (column.as_str(), it.factor));
         let mut words = format!("{} = {}", self.reading, sum_words(columns)).trim_end().to_owned();
         if self.offset != 0.0 || self.columns.is_empty() {
-            words.push_str(&format!(
-                " {} {:.6}",
-                if self.offset < 0.0 { "-" } else { "+" },
-                self.offset.abs()
-            ));
+            words.push_str(&format!(" {} {:.6}", if self.offset < 0.0 { "-" } else { "+" }, self.offset.abs()));
         }
         words
     }
@@ -314,12 +309,7 @@ impl ControllerMap {
     #[must_use]
     pub fn readings(&self, counted: &[f64]) -> Vec<f64> {
         let row = |(row, offset): (usize, &f64)| {
-            counted
-                .iter()
-                .take(self.names.len())
-                .enumerate()
-                .map(|(at, it)| self.forward[(row, at)] * it)
-                .sum::<f64>()
+            counted.iter().take(self.names.len()).enumerate().map(|(at, it)| self.forward[(row, at)] * it).sum::<f64>()
                 + offset
         };
         self.offsets.iter().enumerate().map(row).collect()
@@ -328,8 +318,7 @@ impl ControllerMap {
     /// Counted readings at the model's readings (rad, m).
     #[must_use]
     pub fn controller_readings(&self, readings: &[f64]) -> Vec<f64> {
-        let from: Vec<f64> =
-            readings.iter().zip(self.offsets.iter()).map(|(it, offset)| it - offset).collect();
+        let from: Vec<f64> = readings.iter().zip(self.offsets.iter()).map(|(it, offset)| it - offset).collect();
         self.change(&from)
     }
 
@@ -344,9 +333,8 @@ impl ControllerMap {
     #[must_use]
     pub fn change(&self, of_readings: &[f64]) -> Vec<f64> {
         let count = self.names.len();
-        let row = |row: usize| {
-            of_readings.iter().take(count).enumerate().map(|(at, it)| self.back[(row, at)] * it).sum()
-        };
+        let row =
+            |row: usize| of_readings.iter().take(count).enumerate().map(|(at, it)| self.back[(row, at)] * it).sum();
         (0..count).map(row).collect()
     }
 }
@@ -406,10 +394,7 @@ mod tests {
     #[test]
     fn what_cannot_be_taken_apart_is_refused() {
         for readings in [
-            controller_from_rows(&[
-                ("a", &[("J1", 1.0), ("J2", 1.0)], 0.0),
-                ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0),
-            ]),
+            controller_from_rows(&[("a", &[("J1", 1.0), ("J2", 1.0)], 0.0), ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0)]),
             controller_from_rows(&[("a", &[("J1", 1.0)], 0.0), ("b", &[("J1", 1.0)], 0.0)]),
             controller_from_rows(&[("a", &[], 0.3)]),
         ] {

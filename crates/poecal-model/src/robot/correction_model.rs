@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use super::{
-    CompliantDirections, Gravity, JointKind, JointTerm, Robot, Sizes, Statics, Term, TermArgument,
-    TermFunction, TermGroup, TermKind,
+    CompliantDirections, Gravity, JointKind, JointTerm, Robot, Sizes, Statics, Term, TermArgument, TermFunction,
+    TermGroup, TermKind,
 };
 
 /// Extent of the model of errors beyond geometry.
@@ -141,11 +141,8 @@ impl<'a> LoadedJoint<'a> {
         ];
         let arguments = arguments.into_iter().filter(|it| is_moving || *it != TermArgument::OwnValue);
         let mut found = Vec::new();
-        for (argument, number) in
-            arguments.flat_map(|it| self.numbers(it).into_iter().map(move |at| (it, at)))
-        {
-            let is_of =
-                |kind: &TermKind| kind.row().argument == argument && kind.row().is_numbered() == (number > 0);
+        for (argument, number) in arguments.flat_map(|it| self.numbers(it).into_iter().map(move |at| (it, at))) {
+            let is_of = |kind: &TermKind| kind.row().argument == argument && kind.row().is_numbered() == (number > 0);
             let terms = TermKind::ALL.into_iter().filter(is_of).map(|kind| kind.with_number(number));
             found.extend(terms.filter_map(|term| Some((term, self.group(term)?, self.share(term)))));
         }
@@ -159,9 +156,7 @@ impl<'a> LoadedJoint<'a> {
         match argument {
             TermArgument::Masses if is_loaded && self.statics.carries_masses(self.joint) => vec![0],
             // All weights act alike where a link shifts.
-            TermArgument::Weight if self.shifts => {
-                self.carried.last().copied().map(counted).into_iter().collect()
-            }
+            TermArgument::Weight if self.shifts => self.carried.last().copied().map(counted).into_iter().collect(),
             TermArgument::Weight if is_loaded => self.carried.iter().copied().map(counted).collect(),
             TermArgument::Payload if is_loaded => {
                 let last = self.robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
@@ -187,11 +182,9 @@ impl<'a> LoadedJoint<'a> {
     /// Factors on which its value may depend: the side from which it is approached only if it is its own, or that of all.
     fn factors(&self) -> impl Iterator<Item = usize> {
         let joint = &self.robot.joints[self.joint];
-        let is_own =
-            |of: &str| of.is_empty() || [&joint.name, &joint.reading.name].into_iter().any(|it| it == of);
+        let is_own = |of: &str| of.is_empty() || [&joint.name, &joint.reading.name].into_iter().any(|it| it == of);
         let all = self.robot.factors.iter().enumerate();
-        all.filter(move |(_, it)| !it.is_payload() && it.approached_joint().is_none_or(is_own))
-            .map(|(index, _)| index)
+        all.filter(move |(_, it)| !it.is_payload() && it.approached_joint().is_none_or(is_own)).map(|(index, _)| index)
     }
 
     /// Group of a term, if it is among corrections; of a factor by its name.

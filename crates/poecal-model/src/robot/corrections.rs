@@ -62,14 +62,12 @@ impl FromStr for Corrections {
             }
             sizes[group] = match size {
                 None => Sizes::ALL[group],
-                Some(text) => {
-                    text.parse().ok().filter(|size| (1e-9..=1.0).contains(size)).ok_or_else(|| {
-                        format!(
-                            "found `{text}` as the size of {name}, expected {} from 1e-9 to 1, like 1e-3",
-                            if group.is_of_lengths() { "metres" } else { "radians" }
-                        )
-                    })?
-                }
+                Some(text) => text.parse().ok().filter(|size| (1e-9..=1.0).contains(size)).ok_or_else(|| {
+                    format!(
+                        "found `{text}` as the size of {name}, expected {} from 1e-9 to 1, like 1e-3",
+                        if group.is_of_lengths() { "metres" } else { "radians" }
+                    )
+                })?,
             };
         }
         Ok(Corrections::Sizes(sizes))

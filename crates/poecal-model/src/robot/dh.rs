@@ -62,8 +62,7 @@ impl Robot {
                 DhTableConvention::Standard => base_from_joint * along_z * along_x,
                 DhTableConvention::Modified => base_from_joint * along_z,
             };
-            base_from_frame =
-                if row.fixed == Pose::identity() { base_from_row } else { base_from_row * row.fixed };
+            base_from_frame = if row.fixed == Pose::identity() { base_from_row } else { base_from_row * row.fixed };
         }
         Robot::new(name, joints, base_from_frame * last_from_tip)
     }

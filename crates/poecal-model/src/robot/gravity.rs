@@ -122,8 +122,7 @@ impl Gravity {
             body.joint()?;
             Some(Weight { name: robot.joints[joint].name.clone(), body, place: *pivots.get(joint)? })
         });
-        let tip =
-            Weight { name: robot.tip_name.clone(), body: robot.tip_body(), place: robot.home.translation };
+        let tip = Weight { name: robot.tip_name.clone(), body: robot.tip_body(), place: robot.home.translation };
         let weights = at_joints.chain([tip]).collect();
         Gravity { direction: direction.normalize().map(|it| it + 0.0), weights, axes: axes(robot) }
     }

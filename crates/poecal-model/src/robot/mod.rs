@@ -23,9 +23,7 @@ mod zeros;
 
 pub use body::{Body, MEASURED, Mount};
 pub use compliance::CompliantDirections;
-pub use controller::{
-    Controller, ControllerColumn, ControllerMap, ControllerReading, ThirdAxis, level, sum_words,
-};
+pub use controller::{Controller, ControllerColumn, ControllerMap, ControllerReading, ThirdAxis, level, sum_words};
 pub use correction_model::{CorrectionExtent, CorrectionModel};
 pub use corrections::Corrections;
 pub use dh::{DhRow, DhTableConvention};
@@ -130,10 +128,7 @@ impl Robot {
             check_name(&joint.name, "joint")?;
             check_name(&joint.reading.name, "joint")?;
             if !names.insert(joint.name.as_str()) {
-                return error(format!(
-                    "robot `{name}` has two joints named `{}`, expected unique names",
-                    joint.name
-                ));
+                return error(format!("robot `{name}` has two joints named `{}`, expected unique names", joint.name));
             }
         }
         Ok(Robot {
@@ -346,9 +341,8 @@ pub fn check_name(name: &str, of: &str) -> Result<()> {
         return Ok(());
     }
     let letters = name.chars().count();
-    ErrorKind::Model.refuse(format!(
-        "found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"
-    ))
+    ErrorKind::Model
+        .refuse(format!("found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"))
 }
 
 #[cfg(test)]

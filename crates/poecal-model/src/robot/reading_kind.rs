@@ -59,10 +59,7 @@ mod tests {
 
     #[test]
     fn angles_are_shown_in_degrees_and_factors_as_they_are() {
-        assert_eq!(
-            (ReadingKind::Angle.symbol(), ReadingKind::Angle.in_shown_unit(0.5f64.to_radians())),
-            ("deg", 0.5)
-        );
+        assert_eq!((ReadingKind::Angle.symbol(), ReadingKind::Angle.in_shown_unit(0.5f64.to_radians())), ("deg", 0.5));
         assert_eq!(ReadingKind::Factor.in_shown_unit(21.5), 21.5);
     }
 }

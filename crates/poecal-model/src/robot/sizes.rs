@@ -37,11 +37,7 @@ impl Sizes {
     #[must_use]
     pub fn gives(&self) -> CompliantDirections {
         let slides = |group: TermGroup| group.is_of_lengths() && self[group] > 0.0;
-        if TermGroup::ALL.into_iter().any(slides) {
-            CompliantDirections::All
-        } else {
-            CompliantDirections::Tilting
-        }
+        if TermGroup::ALL.into_iter().any(slides) { CompliantDirections::All } else { CompliantDirections::Tilting }
     }
 
     /// The larger of both, group by group.

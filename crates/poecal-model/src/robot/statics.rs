@@ -68,16 +68,13 @@ impl<'a> Statics<'a> {
             levers.push(longest);
             for weight in &gravity.weights {
                 shares.push(match robot.joints[joint].kind {
-                    JointKind::Revolute => {
-                        lever(weight).filter(|it| *it > least).map_or(0.0, |_| 1.0 / longest)
-                    }
+                    JointKind::Revolute => lever(weight).filter(|it| *it > least).map_or(0.0, |_| 1.0 / longest),
                     JointKind::Prismatic => lever(weight).map_or(0.0, |_| 1.0),
                 });
             }
             let lever = |mass: &Mass| longest_lever(robot, gravity, joint, (mass.body, &mass.place));
             let arms: Vec<Option<f64>> = robot.masses.iter().map(lever).collect();
-            let carried =
-                || robot.masses.iter().zip(&arms).filter_map(|(mass, arm)| Some((mass.kg, (*arm)?)));
+            let carried = || robot.masses.iter().zip(&arms).filter_map(|(mass, arm)| Some((mass.kg, (*arm)?)));
             let kg: f64 = carried().map(|(kg, _)| kg).sum();
             let all = match robot.joints[joint].kind {
                 JointKind::Revolute => {
@@ -125,21 +122,12 @@ impl<'a> Statics<'a> {
             TermArgument::Masses => self.carries_masses(joint),
             TermArgument::Weight => self.is_carried(joint, term.index()),
             TermArgument::Payload => self.is_carried(joint, self.gravity.weights.len().saturating_sub(1)),
-            TermArgument::Nothing
-            | TermArgument::OwnValue
-            | TermArgument::OtherJoint
-            | TermArgument::Factor => false,
+            TermArgument::Nothing | TermArgument::OwnValue | TermArgument::OtherJoint | TermArgument::Factor => false,
         }
     }
 
     /// Torque model of a joint with these coefficients of the weights and of all masses, where these joints are the moving ones of an arm.
-    pub(crate) fn pull(
-        &self,
-        joint: usize,
-        moving: &[usize],
-        sags: &[f64],
-        of_masses: f64,
-    ) -> Option<GravityTorque> {
+    pub(crate) fn pull(&self, joint: usize, moving: &[usize], sags: &[f64], of_masses: f64) -> Option<GravityTorque> {
         let after = |body: Body| {
             let carrying = self.robot.joints_to(body);
             moving.iter().take_while(|it| carrying.contains(it)).count()
@@ -150,8 +138,7 @@ impl<'a> Statics<'a> {
         let sagging = sagging.map(|((weight, share), sag)| (share * sag, weight.body, weight.place));
         let masses = &self.robot.masses;
         let shares = self.of_masses.get(joint * masses.len()..)?;
-        let massive =
-            masses.iter().zip(shares).map(|(mass, share)| (share * of_masses, mass.body, mass.place));
+        let massive = masses.iter().zip(shares).map(|(mass, share)| (share * of_masses, mass.body, mass.place));
         let pulled = sagging.chain(massive).filter(|(size, ..)| *size != 0.0);
         let weights: Vec<PulledWeight> =
             pulled.map(|(size, body, place)| PulledWeight { after: after(body), size, place }).collect();
@@ -183,8 +170,7 @@ impl<'a> Statics<'a> {
         }
         out.values.clear();
         out.of_masses.clear();
-        let places: Vec<Vector3<f64>> =
-            weights.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
+        let places: Vec<Vector3<f64>> = weights.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
         let masses: Vec<Vector3<f64>> =
             self.robot.masses.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
         for (index, (joint, (screw, place))) in joints().enumerate() {
@@ -211,12 +197,7 @@ fn body_of(links: &[Pose], body: Body) -> Pose {
 }
 
 /// Longest lever of a weight about a joint that carries it: the path from joint to joint, metres.
-fn longest_lever(
-    robot: &Robot,
-    gravity: &Gravity,
-    joint: usize,
-    (body, place): (Body, &Vector3<f64>),
-) -> Option<f64> {
+fn longest_lever(robot: &Robot, gravity: &Gravity, joint: usize, (body, place): (Body, &Vector3<f64>)) -> Option<f64> {
     let path = robot.joints_to(body);
     let first = path.iter().position(|&other| other == joint)?;
     let turning = path[first..].iter().filter(|&&other| robot.joints[other].kind == JointKind::Revolute);

@@ -47,9 +47,7 @@ impl Robot {
         }
         match term.argument() {
             TermArgument::Masses if self.masses.is_empty() => Some("a robot with masses".to_owned()),
-            TermArgument::Weight | TermArgument::Payload if weights == 0 => {
-                Some("a robot with weights".to_owned())
-            }
+            TermArgument::Weight | TermArgument::Payload if weights == 0 => Some("a robot with weights".to_owned()),
             TermArgument::Weight if term.index() >= weights => Some(format!("one of the {weights} weights")),
             TermArgument::Nothing
             | TermArgument::OwnValue

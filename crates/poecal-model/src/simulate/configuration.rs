@@ -87,11 +87,7 @@ impl Configurations {
             // At a limit that is no step, it is the step before it.
             let step = if kind == ReadingKind::Angle { 1e-4_f64.to_radians() } else { 1e-6 };
             let inside = found.min(upper - step).max(lower + step);
-            if kind == ReadingKind::Factor || upper - lower < 2.0 * step {
-                found
-            } else {
-                round_to_step(range, inside)
-            }
+            if kind == ReadingKind::Factor || upper - lower < 2.0 * step { found } else { round_to_step(range, inside) }
         };
         self.readings.iter().zip(readings).map(one).collect()
     }
@@ -99,9 +95,8 @@ impl Configurations {
     /// True if all readings are within their ranges.
     #[must_use]
     pub fn contain(&self, readings: &[f64]) -> bool {
-        let within = |(&(_, lower, upper), reading): (&(ReadingKind, f64, f64), &f64)| {
-            (lower..=upper).contains(reading)
-        };
+        let within =
+            |(&(_, lower, upper), reading): (&(ReadingKind, f64, f64), &f64)| (lower..=upper).contains(reading);
         self.readings.len() == readings.len() && self.readings.iter().zip(readings).all(within)
     }
 }

@@ -7,9 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::{Configurations, SessionKind, Simulation, random};
-use crate::measurement::{
-    Dataset, Measurement, MeasurementOrigin, NUMBERS, Observation, RandomDraws, StationLayout,
-};
+use crate::measurement::{Dataset, Measurement, MeasurementOrigin, NUMBERS, Observation, RandomDraws, StationLayout};
 use crate::robot::{Body, Mount, Robot};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -56,10 +54,9 @@ struct PlaceView {
 impl PlaceView {
     /// The target in the base frame.
     fn base_from_target(&self, robot: &Robot, readings: &[f64]) -> Pose {
-        self.target.as_ref().map_or_else(
-            || robot.forward_kinematics(readings),
-            |target| super::base_from(robot, target, readings),
-        )
+        self.target
+            .as_ref()
+            .map_or_else(|| robot.forward_kinematics(readings), |target| super::base_from(robot, target, readings))
     }
 
     /// Target as it is measured, if the station is that of one configuration.
@@ -135,8 +132,7 @@ impl Simulation {
             let sight = &sights[row % sights.len()];
             let mut observation = sight.observation(&mut data);
             let readings = if kind.is_touched() {
-                let found =
-                    self.touching_configuration(actual, (&configurations, row), kind, sight, generator)?;
+                let found = self.touching_configuration(actual, (&configurations, row), kind, sight, generator)?;
                 observation.measurement = found.1;
                 found.0
             } else {
@@ -205,9 +201,7 @@ impl Simulation {
             let (point, turn) = match session.stands {
                 StationLayout::Around => (random::direction(&mut generator) * (1.5 * actual.reach_m()), turn),
                 StationLayout::InARow => (middle + apart * index as f64, turn),
-                StationLayout::Upward => {
-                    (Vector3::zeros(), rotation::exp(&(random::direction(&mut generator) * 0.02)))
-                }
+                StationLayout::Upward => (Vector3::zeros(), rotation::exp(&(random::direction(&mut generator) * 0.02))),
                 StationLayout::Anywhere | StationLayout::Within | StationLayout::Before => (middle, turn),
             };
             let is_counted = session.function.zero_is_unknown && !kind.is_touched();
@@ -222,18 +216,12 @@ impl Simulation {
     }
 
     /// A point that all targets reach well: the middle of their positions.
-    fn middle(
-        &self,
-        actual: &Robot,
-        configurations: &Configurations,
-        generator: &mut ChaCha8Rng,
-    ) -> Vector3<f64> {
+    fn middle(&self, actual: &Robot, configurations: &Configurations, generator: &mut ChaCha8Rng) -> Vector3<f64> {
         const SOME: usize = 20;
         let place = |readings: &[f64]| {
             let targets = actual.mounted.iter().filter(|it| it.body != Body::Base);
             let places = targets.map(|it| super::base_from(actual, it, readings).translation);
-            let (count, sum) =
-                places.fold((0, Vector3::zeros()), |(count, sum), place| (count + 1, sum + place));
+            let (count, sum) = places.fold((0, Vector3::zeros()), |(count, sum), place| (count + 1, sum + place));
             match count {
                 0 => actual.forward_kinematics(readings).translation,
                 count => sum / f64::from(count),
@@ -301,11 +289,10 @@ impl Simulation {
         generator: &mut ChaCha8Rng,
     ) -> Result<(Vec<f64>, Measurement)> {
         let length = random::normal_vector(generator) * self.noise_position_m;
-        let [exact, said] =
-            self.with_noise(row, length, 0.0, generator, |drawn| match kind.session().drawn {
-                MeasurementOrigin::Touched(constraint) => constraint(drawn),
-                MeasurementOrigin::Seen(measure) => [measure(&Pose::identity(), drawn); 2],
-            });
+        let [exact, said] = self.with_noise(row, length, 0.0, generator, |drawn| match kind.session().drawn {
+            MeasurementOrigin::Touched(constraint) => constraint(drawn),
+            MeasurementOrigin::Seen(measure) => [measure(&Pose::identity(), drawn); 2],
+        });
         for _ in 0..ATTEMPTS {
             let start = configurations.random(generator);
             if let Some(found) = fulfil_measurement(actual, &start, sight, &exact)
@@ -322,12 +309,7 @@ impl Simulation {
 }
 
 /// Readings near these with which a measurement fits exactly, by Newton's method with the least change of the joints.
-fn fulfil_measurement(
-    robot: &Robot,
-    start: &[f64],
-    sight: &PlaceView,
-    exact: &Measurement,
-) -> Option<Vec<f64>> {
+fn fulfil_measurement(robot: &Robot, start: &[f64], sight: &PlaceView, exact: &Measurement) -> Option<Vec<f64>> {
     let numbers = exact.dim();
     let residual = |readings: &[f64]| {
         let mut e = [0.0; NUMBERS];

@@ -59,12 +59,7 @@ impl GrossErrors {
         rows
     }
 
-    fn spoil_measurement(
-        &self,
-        measurement: &Measurement,
-        turned: bool,
-        generator: &mut ChaCha8Rng,
-    ) -> Measurement {
+    fn spoil_measurement(&self, measurement: &Measurement, turned: bool, generator: &mut ChaCha8Rng) -> Measurement {
         let mut between = |[least, most]: [f64; 2]| -> Vector3<f64> {
             let direction = random::direction(generator);
             direction * (least + (most - least) * random::uniform_number(generator))

@@ -157,11 +157,8 @@ impl Simulation {
     /// The robot with the factors of its terms: the side from which each revolute joint is approached, the temperature, and the payload.
     fn with_factors(&self, nominal: &Robot) -> Result<Robot> {
         let turns = |joint: &&Joint| joint.kind == JointKind::Revolute && joint.reading.name == joint.name;
-        let approached = nominal
-            .joints
-            .iter()
-            .filter(turns)
-            .map(|joint| format!("{}_{}", FactorReading::APPROACH, joint.name));
+        let approached =
+            nominal.joints.iter().filter(turns).map(|joint| format!("{}_{}", FactorReading::APPROACH, joint.name));
         let sides = approached.filter(|_| self.terms[TermGroup::Backlash] > 0.0);
         let warmth = (self.terms[TermGroup::Factors] > 0.0).then(|| TEMPERATURE.to_owned());
         let payload = (self.terms[TermGroup::Payload] > 0.0).then(|| FactorReading::PAYLOAD.to_owned());
@@ -246,8 +243,7 @@ impl Simulation {
             let mut readings = configurations.random(generator);
             let first = readings.len() - nominal.factors.len();
             for (at, factor) in nominal.factors.iter().enumerate() {
-                readings[first + at] =
-                    value_of(factor, data.reading_names(), [&readings, &before], generator);
+                readings[first + at] = value_of(factor, data.reading_names(), [&readings, &before], generator);
             }
             before.clone_from(&readings);
             let (instrument, target) = pairs.get(row % pairs.len().max(1)).copied().unwrap_or_default();
@@ -275,11 +271,8 @@ impl Simulation {
             let shift = random::direction(generator) * self.error_position_m;
             Pose::new(turn, point + shift - turn * point)
         };
-        let screws: Vec<_> = nominal
-            .joints
-            .iter()
-            .map(|joint| joint.screw.transform(&motion_about(&joint.frame.translation)))
-            .collect();
+        let screws: Vec<_> =
+            nominal.joints.iter().map(|joint| joint.screw.transform(&motion_about(&joint.frame.translation))).collect();
         let mut actual = nominal.with_screws(&screws);
         actual.home = motion_about(&nominal.home.translation) * nominal.home;
         let mut moved = |mount: &Mount| {
@@ -313,17 +306,13 @@ pub fn exact_measurement(kind: SessionKind, row: usize, target: &Pose) -> Measur
 /// are all there is. Instruments do not see targets on their own bodies.
 pub fn pairs(robot: &Robot) -> Vec<(Option<&Mount>, Option<&Mount>)> {
     let some_or_none = |mounts: &'_ [Mount]| mounts.is_empty().then_some(None);
-    let instruments =
-        || some_or_none(&robot.instruments).into_iter().chain(robot.instruments.iter().map(Some));
+    let instruments = || some_or_none(&robot.instruments).into_iter().chain(robot.instruments.iter().map(Some));
     let targets = || some_or_none(&robot.mounted).into_iter().chain(robot.mounted.iter().map(Some));
     let body = |target: Option<&Mount>| target.map_or_else(|| robot.tip_body(), |mount| mount.body);
     let moves = |(instrument, target): &(Option<&Mount>, Option<&Mount>)| {
         instrument.map_or(Body::Base, |mount| mount.body) != body(*target)
     };
-    instruments()
-        .flat_map(|instrument| targets().map(move |target| (instrument, target)))
-        .filter(moves)
-        .collect()
+    instruments().flat_map(|instrument| targets().map(move |target| (instrument, target))).filter(moves).collect()
 }
 
 /// `instrument_from_target`; without an instrument, as measured by the device beside the robot.

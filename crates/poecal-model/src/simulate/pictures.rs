@@ -120,8 +120,7 @@ impl PictureSimulation {
     #[must_use]
     pub fn with_board_and_lens(self, board: Board, lens: Lens) -> Self {
         let height_px = lens.size_px.map_or(1000.0, |[_, height]| f64::from(height));
-        let distance_m =
-            [0.54, 0.33].map(|part| lens.focal_px[0] * 2.0 * board.radius_m() / (part * height_px));
+        let distance_m = [0.54, 0.33].map(|part| lens.focal_px[0] * 2.0 * board.radius_m() / (part * height_px));
         PictureSimulation { board, lens, distance_m, ..self }
     }
 
@@ -137,10 +136,7 @@ impl PictureSimulation {
             rotation::exp(&turn) * rotation::about(0, if self.in_hand { 0.0 } else { std::f64::consts::PI });
         let tip_from_held = Pose::new(held_turn, random::normal_vector(&mut generator) * 0.03);
         let refuse = || {
-            Error::new(
-                ErrorKind::Problem,
-                "found no configurations in which the camera sees the board, expected some",
-            )
+            Error::new(ErrorKind::Problem, "found no configurations in which the camera sees the board, expected some")
         };
         let (arm, readings) = nominal.arm(&[])?;
         let configurations = Configurations::new(nominal);
@@ -148,8 +144,7 @@ impl PictureSimulation {
         let first = configurations.random(&mut generator);
         let base_from_held = nominal.forward_kinematics(&first) * tip_from_held;
         let base_from_other = base_from_held * self.relative_pose(&self.sight(&mut generator));
-        let scene =
-            PictureScene { arm, readings, configurations, actual: &actual, tip_from_held, base_from_other };
+        let scene = PictureScene { arm, readings, configurations, actual: &actual, tip_from_held, base_from_other };
         let mut data = Dataset::new(nominal.reading_names());
         data.pictures.cameras = vec![Camera::new("camera".to_owned(), self.lens)];
         data.pictures.boards = vec![self.board.clone()];
@@ -224,8 +219,7 @@ impl PictureSimulation {
         let across = between([0.0, std::f64::consts::TAU]);
         let (tilt, turned) = (between(self.tilt_rad), between([0.0, std::f64::consts::TAU]));
         let turn = if self.turns {
-            rotation::exp(&(Vector3::new(across.cos(), across.sin(), 0.0) * tilt))
-                * rotation::about(2, turned)
+            rotation::exp(&(Vector3::new(across.cos(), across.sin(), 0.0) * tilt)) * rotation::about(2, turned)
         } else {
             rotation::about(0, tilt * across.cos().signum())
         };
@@ -239,13 +233,7 @@ impl PictureSimulation {
     }
 
     /// Mounted object in the base, with the error of this configuration.
-    fn held_pose(
-        &self,
-        actual: &Robot,
-        readings: &[f64],
-        tip_from_held: &Pose,
-        generator: &mut ChaCha8Rng,
-    ) -> Pose {
+    fn held_pose(&self, actual: &Robot, readings: &[f64], tip_from_held: &Pose, generator: &mut ChaCha8Rng) -> Pose {
         let exact = actual.forward_kinematics(readings) * *tip_from_held;
         let shift = random::normal_vector(generator) * self.common.shift_m;
         let turn = random::normal_vector(generator) * self.common.turn_rad;

@@ -29,8 +29,7 @@ fn robot(name: &str, joints: Vec<Joint>, home: Pose) -> Robot {
 
 fn revolute(index: usize, direction: [f64; 3], point: [f64; 3], lower_deg: f64, upper_deg: f64) -> Joint {
     let point = Vector3::from(point);
-    let mut joint =
-        Joint::revolute(&format!("joint{}", index + 1), Screw::revolute(&Vector3::from(direction), &point));
+    let mut joint = Joint::revolute(&format!("joint{}", index + 1), Screw::revolute(&Vector3::from(direction), &point));
     joint.frame.translation = point;
     joint.limits = Some(JointLimits { lower: lower_deg.to_radians(), upper: upper_deg.to_radians() });
     joint

@@ -63,8 +63,7 @@ fn the_arm_of_example_4_5_stands_where_the_book_has_it() {
     let robot = ur5();
     // The pose is as printed: one elbow and one wrist turned by a right angle.
     let printed = pose([[0.0, -1.0, 0.0, 0.095], [1.0, 0.0, 0.0, 0.109], [0.0, 0.0, 1.0, 0.988]]);
-    let first =
-        robot_difference(&robot.forward_kinematics(&[0.0, -FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, 0.0]), &printed);
+    let first = robot_difference(&robot.forward_kinematics(&[0.0, -FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, 0.0]), &printed);
     let values = [0.3, -1.1, 0.7, -0.4, 1.2, 2.5];
     let tip = robot.forward_kinematics(&values);
     let second = robot_difference(
@@ -89,14 +88,7 @@ fn the_arm_of_example_4_5_stands_where_the_book_has_it() {
                 -0.13823345626283065,
                 0.1927783516058703,
             ],
-            [
-                -0.29552020666133955,
-                0.955336489125606,
-                0.0,
-                -0.5927052008322411,
-                -0.183345203949564,
-                0.5538342612550011,
-            ],
+            [-0.29552020666133955, 0.955336489125606, 0.0, -0.5927052008322411, -0.183345203949564, 0.5538342612550011],
             [
                 0.6853164493328193,
                 0.2119932202323977,
@@ -133,8 +125,7 @@ fn the_arm_of_example_4_5_stands_where_the_book_has_it() {
 /// Sample calls of the book's library; the third axis of the first has a pitch.
 #[test]
 fn sample_calls_of_the_library_come_out() {
-    let axes =
-        [[0.0, 0.0, 1.0, 4.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, -1.0, -6.0, 0.0, -0.1]];
+    let axes = [[0.0, 0.0, 1.0, 4.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, -1.0, -6.0, 0.0, -0.1]];
     let home = pose([[-1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 6.0], [0.0, 0.0, -1.0, 2.0]]);
     let motions = axes.iter().zip([FRAC_PI_2, 3.0, PI]).map(|(axis, value)| {
         let Twist { v, w } = twist(*axis);
@@ -152,14 +143,7 @@ fn sample_calls_of_the_library_come_out() {
         &space_jacobian(&axes.map(twist), &[0.2, 1.1, 0.1, 1.2]),
         &[
             [0.0, 0.0, 1.0, 0.0, 0.2, 0.2],
-            [
-                0.9800665778412416,
-                0.19866933079506122,
-                0.0,
-                1.9521863824506809,
-                0.4365413247037721,
-                2.960266133840988,
-            ],
+            [0.9800665778412416, 0.19866933079506122, 0.0, 1.9521863824506809, 0.4365413247037721, 2.960266133840988],
             [
                 -0.09011563789485476,
                 0.4445543984476258,

@@ -4,9 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
-use poecal_model::offsets::{
-    EndConstraint, OffsetExplanation, OffsetOptions, explain, explain_screws, into_screws,
-};
+use poecal_model::offsets::{EndConstraint, OffsetExplanation, OffsetOptions, explain, explain_screws, into_screws};
 use poecal_model::robot::{Joint, JointKind, Reading, Robot};
 use poecal_model::simulate::{
     Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
@@ -36,23 +34,15 @@ fn random_offsets(robot: &Robot, angle_deg: f64, generator: &mut ChaCha8Rng) -> 
 }
 
 /// Largest distance and angle between `base * robot(θ + offsets) * tip` and `other(θ)` on random configurations.
-fn difference(
-    robot: &Robot,
-    offsets: &[f64],
-    ends: [&Pose; 2],
-    other: &Robot,
-    generator: &mut ChaCha8Rng,
-) -> f64 {
+fn difference(robot: &Robot, offsets: &[f64], ends: [&Pose; 2], other: &Robot, generator: &mut ChaCha8Rng) -> f64 {
     let mut largest = 0.0_f64;
     for _ in 0..100 {
         let readings = random_configuration(robot, generator);
-        let values: Vec<f64> =
-            robot.joint_values(&readings).iter().zip(offsets).map(|(v, o)| v + o).collect();
+        let values: Vec<f64> = robot.joint_values(&readings).iter().zip(offsets).map(|(v, o)| v + o).collect();
         let tip = *ends[0] * robot.motion(&values) * robot.home * *ends[1];
         let expected = other.forward_kinematics(&readings);
         largest = larger_or_nan(largest, (tip.translation - expected.translation).norm());
-        largest =
-            larger_or_nan(largest, rotation::log(&(tip.rotation * expected.rotation.transpose())).norm());
+        largest = larger_or_nan(largest, rotation::log(&(tip.rotation * expected.rotation.transpose())).norm());
     }
     largest
 }
@@ -118,11 +108,8 @@ fn free_base_and_tip_are_found_too() {
                 joint.frame = base * joint.frame;
             }
             actual.home = base * actual.home * Pose::exp(&random_twist(1.0, 0.3, &mut generator));
-            let options = OffsetOptions {
-                base: EndConstraint::Free,
-                tip: EndConstraint::Free,
-                ..OffsetOptions::default()
-            };
+            let options =
+                OffsetOptions { base: EndConstraint::Free, tip: EndConstraint::Free, ..OffsetOptions::default() };
             let found = explain(robot, &actual, &options).unwrap();
             let ends = [&found.base_motion, &found.tip_motion];
             let predicted = difference(robot, &found.offsets, ends, &actual, &mut generator);
@@ -170,8 +157,7 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     let tilt = Pose::from_xyz_rpy([0.0; 3], [3.7e-6, 0.0, 0.0]);
     rounded.joints[1].screw = axis.transform(&tilt);
     let mut actual = into_screws(&rounded, &[0.02, 0.01, -0.03]).unwrap();
-    actual.joints[1].screw =
-        actual.joints[1].screw.transform(&Pose::from_xyz_rpy([0.0; 3], [0.0, 0.002, 0.0]));
+    actual.joints[1].screw = actual.joints[1].screw.transform(&Pose::from_xyz_rpy([0.0; 3], [0.0, 0.002, 0.0]));
     let found = explain(&rounded, &actual, &OffsetOptions::default()).unwrap();
     println!("nearly coaxial: {:?}", found.offsets);
     assert_eq!(found.undetermined, [0, 1]);
@@ -183,11 +169,7 @@ const SCATTER: f64 = 3.0;
 
 #[test]
 fn screw_errors_remain_and_hardly_move_the_offsets() {
-    let error = Simulation {
-        error_rotation_rad: 0.1f64.to_radians(),
-        error_position_m: 1e-4,
-        ..Simulation::default()
-    };
+    let error = Simulation { error_rotation_rad: 0.1f64.to_radians(), error_position_m: 1e-4, ..Simulation::default() };
     for (name, robot) in [("elbow", elbow()), ("seven_axis", seven_axis())] {
         let mut worst = 0.0_f64;
         for seed in trials(50).seeds() {
@@ -222,13 +204,11 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let offsets = random_offsets(&robot, 170.0, &mut generator);
             let actual = error.perturb(&into_screws(&robot, &offsets).unwrap(), &mut generator);
-            let options =
-                OffsetOptions { base: end, tip: end, configurations: 1, ..OffsetOptions::default() };
+            let options = OffsetOptions { base: end, tip: end, configurations: 1, ..OffsetOptions::default() };
             let found = explain_screws(&robot, &actual, &options).unwrap();
             let joints = found.joints.iter().map(|joint| (joint.tilt_rad, joint.shift_m.unwrap_or(0.0)));
             let home = found.home.iter().map(|home| (home.rotation_rad, home.position_m));
-            let left_m2: f64 =
-                joints.chain(home).map(|(turn, shift)| (length_m * turn).powi(2) + shift.powi(2)).sum();
+            let left_m2: f64 = joints.chain(home).map(|(turn, shift)| (length_m * turn).powi(2) + shift.powi(2)).sum();
             worst = larger_or_nan(worst, left_m2 / put_in_m2 / (robot.joints.len() + 1) as f64);
             count += 1;
         }
@@ -253,8 +233,7 @@ fn a_screw_error_that_no_offset_can_make_is_the_remainder() {
 fn offsets_of_half_a_turn_are_positive() {
     let mut offsets = [0.0; 6];
     offsets[3] = -PI;
-    let found =
-        explain(&elbow(), &into_screws(&elbow(), &offsets).unwrap(), &OffsetOptions::default()).unwrap();
+    let found = explain(&elbow(), &into_screws(&elbow(), &offsets).unwrap(), &OffsetOptions::default()).unwrap();
     assert!((found.offsets[3].abs() - PI).abs() < EXACT && found.offsets[3] > -PI, "{:?}", found.offsets);
 }
 
@@ -272,9 +251,7 @@ fn mimic_joints_frames_limits_and_targets() {
     for ((joint, before), offset) in actual.joints.iter().zip(&robot.joints).zip(offsets) {
         motion = motion * before.screw.exp(offset);
         assert!(((motion * before.frame).rotation - joint.frame.rotation).norm() < EXACT);
-        assert!(
-            (joint.screw.nearest_point(&joint.frame.translation) - joint.frame.translation).norm() < EXACT
-        );
+        assert!((joint.screw.nearest_point(&joint.frame.translation) - joint.frame.translation).norm() < EXACT);
         assert_eq!((joint.limits, &joint.reading), (before.limits, &before.reading));
     }
     assert!(offset_error(&explain(&robot, &actual, &OffsetOptions::default()).unwrap(), &offsets) < EXACT);
@@ -308,10 +285,7 @@ fn robots_that_are_not_one_are_refused() {
         "found joint `joint3` with another relation to its reading in the actual robot, expected the same mimic relation as in the nominal one"
     );
     let wrong = |offsets: &[f64]| into_screws(&elbow(), offsets).unwrap_err().to_string();
-    assert_eq!(
-        wrong(&[0.0; 5]),
-        "found 5 offsets for robot `googol_elbow`, expected one for each of its 6 joints"
-    );
+    assert_eq!(wrong(&[0.0; 5]), "found 5 offsets for robot `googol_elbow`, expected one for each of its 6 joints");
     assert_eq!(
         wrong(&[0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0]),
         "found the offset NaN of joint `joint2`, expected a finite one"

@@ -40,11 +40,7 @@ pub fn upper_mean_square(freedom: f64) -> f64 {
 
 /// Lower 5 % point of such a mean square.
 pub fn lower_mean_square(freedom: f64) -> f64 {
-    if freedom > MANY {
-        mean_square_quantile(freedom, -NORMAL)
-    } else {
-        1.0 / f_quantile(0.05, INFINITE, freedom)
-    }
+    if freedom > MANY { mean_square_quantile(freedom, -NORMAL) } else { 1.0 / f_quantile(0.05, INFINITE, freedom) }
 }
 
 /// Quantile of a mean square by its normal quantile (wilson1931).

@@ -5,8 +5,7 @@ mod chi_square;
 
 pub use beta::{binomial_at_most, f_quantile};
 pub use chi_square::{
-    chi_square_median, is_within_band, lower_mean_square, mean_square_quantile, upper_mean_square,
-    upper_quantile,
+    chi_square_median, is_within_band, lower_mean_square, mean_square_quantile, upper_mean_square, upper_quantile,
 };
 
 use nalgebra::Vector3;

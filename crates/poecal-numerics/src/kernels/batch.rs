@@ -124,8 +124,7 @@ impl Batch<'_> {
         }
         for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
             let Some((shift, tilt)) = joint.columns else { continue };
-            let (a, b) =
-                (Vectors::load(simd, &axis.shifts[0], part), Vectors::load(simd, &axis.shifts[1], part));
+            let (a, b) = (Vectors::load(simd, &axis.shifts[0], part), Vectors::load(simd, &axis.shifts[1], part));
             a.dot(wrench.force).add_to(&mut axis.gradient[0], part);
             b.dot(wrench.force).add_to(&mut axis.gradient[1], part);
             if FULL {
@@ -149,12 +148,7 @@ impl Batch<'_> {
 
     /// Columns and gradient of the unknown terms of joint values.
     #[inline(always)]
-    fn add_terms<S: Simd, const FULL: bool>(
-        &mut self,
-        simd: S,
-        target: &KernelFrame<S>,
-        wrench: &RowWrench<S>,
-    ) {
+    fn add_terms<S: Simd, const FULL: bool>(&mut self, simd: S, target: &KernelFrame<S>, wrench: &RowWrench<S>) {
         let (part, stride) = (self.part, self.stride);
         for (joint, axis) in self.plan.joints.iter().zip(&*self.axes).filter(|(joint, _)| joint.terms.1 > 0) {
             let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
@@ -176,11 +170,7 @@ impl Batch<'_> {
 
     /// Columns of the target's position and frame: theory.md §5 (23) and (24).
     #[inline(always)]
-    pub(crate) fn add_place<S: Simd, const FULL: bool>(
-        &mut self,
-        target: &KernelFrame<S>,
-        wrench: &RowWrench<S>,
-    ) {
+    pub(crate) fn add_place<S: Simd, const FULL: bool>(&mut self, target: &KernelFrame<S>, wrench: &RowWrench<S>) {
         let Some(place) = self.plan.place else { return };
         let part = self.part;
         for k in 0..3 {

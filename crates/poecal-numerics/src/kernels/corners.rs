@@ -92,8 +92,7 @@ pub(crate) fn corner_products<S: Simd>(
     let mut unseen = Lanes::splat(simd, 0.0);
     for (block, corners) in corners.iter().enumerate() {
         for part in parts(simd) {
-            let missed =
-                write(simd, (lens, pose), corners, (&mut out.columns[2 * block..], stride, columns), part);
+            let missed = write(simd, (lens, pose), corners, (&mut out.columns[2 * block..], stride, columns), part);
             unseen = unseen + missed;
         }
     }
@@ -200,11 +199,7 @@ fn write<S: Simd>(
     let root = Lanes::load(simd, &corners.root, part);
     let point = Vectors::load(simd, &corners.point, part);
     let FixedMotion { columns: [[a, d, g], [b, e, h], [c, f, i]], translation: [p, q, r] } = *pose;
-    let turn = [
-        Vectors::splat(simd, &[a, b, c]),
-        Vectors::splat(simd, &[d, e, f]),
-        Vectors::splat(simd, &[g, h, i]),
-    ];
+    let turn = [Vectors::splat(simd, &[a, b, c]), Vectors::splat(simd, &[d, e, f]), Vectors::splat(simd, &[g, h, i])];
     let arm = Vectors([turn[0].dot(point), turn[1].dot(point), turn[2].dot(point)]);
     let [x, y, z] = arm.0;
     let (x, y, z) = (x + Lanes::splat(simd, p), y + Lanes::splat(simd, q), z + Lanes::splat(simd, r));

@@ -101,9 +101,7 @@ fn subtract<S: Simd>(simd: S, row: &mut [LaneBlock], other: &[LaneBlock], factor
     let factor = Lanes::splat(simd, factor);
     for (wide, other) in row.iter_mut().zip(other) {
         for part in parts(simd) {
-            Lanes::load(simd, other, part)
-                .times_from(factor, Lanes::load(simd, wide, part))
-                .store(wide, part);
+            Lanes::load(simd, other, part).times_from(factor, Lanes::load(simd, wide, part)).store(wide, part);
         }
     }
 }

@@ -30,11 +30,8 @@ pub(crate) fn errors<S: Simd>(
         let predicted = rotate_vector(simd, &link, place, part) + link.origin();
         (Vectors::load(simd, own_place, part) - predicted).store(&mut out[0], part);
         if framed {
-            let own = [
-                Vectors::load(simd, own_x, part),
-                Vectors::load(simd, own_y, part),
-                Vectors::load(simd, own_z, part),
-            ];
+            let own =
+                [Vectors::load(simd, own_x, part), Vectors::load(simd, own_y, part), Vectors::load(simd, own_z, part)];
             let predicted = [
                 rotate_vector(simd, &link, x, part),
                 rotate_vector(simd, &link, y, part),
@@ -47,12 +44,7 @@ pub(crate) fn errors<S: Simd>(
 
 /// A vector of the last link in the device's axes.
 #[inline(always)]
-fn rotate_vector<S: Simd>(
-    simd: S,
-    link: &KernelFrame<S>,
-    vector: &[LaneBlock; 3],
-    part: usize,
-) -> Vectors<S> {
+fn rotate_vector<S: Simd>(simd: S, link: &KernelFrame<S>, vector: &[LaneBlock; 3], part: usize) -> Vectors<S> {
     let [x, y, z] = Vectors::load(simd, vector, part).0;
     link.column(0).times_plus(x, link.column(1).times_plus(y, link.column(2).scale(z)))
 }

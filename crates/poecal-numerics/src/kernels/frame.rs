@@ -49,11 +49,7 @@ impl<S: Simd> KernelFrame<S> {
 
 /// A row of a frame after a fixed motion.
 #[inline(always)]
-pub(crate) fn turn_row<S: Simd>(
-    simd: S,
-    [x, y, z, origin]: [Lanes<S>; 4],
-    step: &FixedMotion,
-) -> [Lanes<S>; 4] {
+pub(crate) fn turn_row<S: Simd>(simd: S, [x, y, z, origin]: [Lanes<S>; 4], step: &FixedMotion) -> [Lanes<S>; 4] {
     let [a, b, c] = &step.columns;
     let along = |v: &[f64; 3]| {
         let [i, j, k] = Vectors::splat(simd, v).0;

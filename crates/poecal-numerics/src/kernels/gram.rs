@@ -54,16 +54,9 @@ fn tile<S: Simd>(
     let mut sums = [Lanes::splat(simd, 0.0); TILE * TILE];
     for k in 0..used {
         for part in parts(simd) {
-            let left = [
-                Lanes::load(simd, &a[k], part),
-                Lanes::load(simd, &b[k], part),
-                Lanes::load(simd, &c[k], part),
-            ];
-            let right = [
-                Lanes::load(simd, &d[k], part),
-                Lanes::load(simd, &e[k], part),
-                Lanes::load(simd, &f[k], part),
-            ];
+            let left = [Lanes::load(simd, &a[k], part), Lanes::load(simd, &b[k], part), Lanes::load(simd, &c[k], part)];
+            let right =
+                [Lanes::load(simd, &d[k], part), Lanes::load(simd, &e[k], part), Lanes::load(simd, &f[k], part)];
             for row in 0..TILE {
                 for column in 0..TILE {
                     let sum = &mut sums[row * TILE + column];

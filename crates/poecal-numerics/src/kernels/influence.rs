@@ -76,11 +76,7 @@ pub(crate) fn influences<S: Simd>(
 
 /// `Σ yᵢ yᵢᵀ` of these columns, its upper triangle.
 #[inline(always)]
-fn sum_products<S: Simd>(
-    simd: S,
-    columns: &[[LaneBlock; NUMBERS]],
-    part: usize,
-) -> [[Lanes<S>; NUMBERS]; NUMBERS] {
+fn sum_products<S: Simd>(simd: S, columns: &[[LaneBlock; NUMBERS]], part: usize) -> [[Lanes<S>; NUMBERS]; NUMBERS] {
     let mut sum = [[Lanes::splat(simd, 0.0); NUMBERS]; NUMBERS];
     for column in columns {
         let own: [Lanes<S>; NUMBERS] = from_index(

@@ -28,21 +28,13 @@ pub(crate) fn sum_gradient<S: Simd>(simd: S, arm: &ArmAtEstimate<'_>, blocks: &[
 
 /// [`sum_products`] of a plain plan ([`KernelPlan::is_plain`]).
 #[inline(always)]
-pub(crate) fn sum_plain_products<S: Simd>(
-    simd: S,
-    arm: &ArmAtEstimate<'_>,
-    blocks: &[LaneBlock],
-) -> PassTotals {
+pub(crate) fn sum_plain_products<S: Simd>(simd: S, arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals {
     sum::<S, true, true>(simd, arm, blocks)
 }
 
 /// [`sum_gradient`] of a plain plan.
 #[inline(always)]
-pub(crate) fn sum_plain_gradient<S: Simd>(
-    simd: S,
-    arm: &ArmAtEstimate<'_>,
-    blocks: &[LaneBlock],
-) -> PassTotals {
+pub(crate) fn sum_plain_gradient<S: Simd>(simd: S, arm: &ArmAtEstimate<'_>, blocks: &[LaneBlock]) -> PassTotals {
     sum::<S, false, true>(simd, arm, blocks)
 }
 
@@ -177,10 +169,8 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
 
     if let (false, Some(shape)) = (PLAIN, arm.shape) {
         let whole = Lanes::splat(simd, 1.0);
-        let last =
-            batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), whole, per_length);
-        let target =
-            if plan.joints.is_empty() { KernelFrame::from_step(simd, end) } else { last.compose(simd, end) };
+        let last = batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), whole, per_length);
+        let target = if plan.joints.is_empty() { KernelFrame::from_step(simd, end) } else { last.compose(simd, end) };
         let rows = ShapedRows::new((shape, plan.given), first + part * S::F64_LANES, &target, weight);
         let residuals = rows.residual(simd);
         let [force, torque] = rows.wrench(simd);
@@ -197,8 +187,7 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
         return residuals;
     }
     let last = batch.chain::<S, PLAIN>(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
-    let target =
-        if plan.joints.is_empty() { KernelFrame::from_step(simd, end) } else { last.compose(simd, end) };
+    let target = if plan.joints.is_empty() { KernelFrame::from_step(simd, end) } else { last.compose(simd, end) };
     let place = Vectors::load(simd, position, part);
     let (direction, force, residual) = match plan.along {
         Some(along) if !PLAIN => {
@@ -216,10 +205,8 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     let mut wrench = RowWrench { weight, per_length, force, torque: none[1] };
     let mut turn = None;
     if let [x, y, z] = measured.as_chunks::<3>().0 {
-        let measured =
-            [Vectors::load(simd, x, part), Vectors::load(simd, y, part), Vectors::load(simd, z, part)];
-        let found =
-            ResidualRotations::new(simd, &measured, &[target.column(0), target.column(1), target.column(2)]);
+        let measured = [Vectors::load(simd, x, part), Vectors::load(simd, y, part), Vectors::load(simd, z, part)];
+        let found = ResidualRotations::new(simd, &measured, &[target.column(0), target.column(1), target.column(2)]);
         let ratio = Lanes::load(simd, &noise[1], part);
         let whitened = found.r.scale(weight * ratio);
         squares = squares + whitened.dot(whitened);

@@ -47,14 +47,13 @@ pub use errors::FrameColumns;
 pub use gram::TILE;
 pub use influence::NUMBERS;
 pub use plan::{
-    ArmAtEstimate, DevicePlan, FixedMotion, JointPlan, KernelPlan, PackedRows, PlaceComponent, TermPlan,
-    UnpackedRow,
+    ArmAtEstimate, DevicePlan, FixedMotion, JointPlan, KernelPlan, PackedRows, PlaceComponent, TermPlan, UnpackedRow,
 };
 pub use rows::{RowFunctions, ShapedRow};
 pub use simd::{
-    SimdLevel, by_best, cholesky, corner_products, cosines_and_sines, errors, influences, inverse,
-    last_links, simd_levels, solve, stated_level, sum_gradient, sum_plain_gradient, sum_plain_products,
-    sum_products, whitened_columns,
+    SimdLevel, by_best, cholesky, corner_products, cosines_and_sines, errors, influences, inverse, last_links,
+    simd_levels, solve, stated_level, sum_gradient, sum_plain_gradient, sum_plain_products, sum_products,
+    whitened_columns,
 };
 pub use totals::{PassTotals, TileIndex};
 pub use vector::{LaneBlock, WIDTH};

@@ -194,8 +194,7 @@ impl PackedRows {
             let at = |lane: usize| (first + lane).min(count - 1);
             // Rows are made one by one: functions that build arrays may not be inlined, and each row then costs calls.
             let [a, b, c, d, e, f, g, h] = [0, 1, 2, 3, 4, 5, 6, 7].map(at);
-            let rows: [UnpackedRow<'a>; WIDTH] =
-                [row(a), row(b), row(c), row(d), row(e), row(f), row(g), row(h)];
+            let rows: [UnpackedRow<'a>; WIDTH] = [row(a), row(b), row(c), row(d), row(e), row(f), row(g), row(h)];
             put(plan, block, &rows);
             if !plan.in_order {
                 let (_, joints) = block.split_at_mut(len - plan.terms.len() - 2 * plan.joints.len());

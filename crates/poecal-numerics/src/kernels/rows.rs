@@ -17,8 +17,7 @@ pub struct ShapedRow {
 
 impl ShapedRow {
     /// A row of weight zero.
-    pub const NONE: ShapedRow =
-        ShapedRow { residual: [0.0; NUMBERS], sensitivity: [[0.0; 2 * HALF]; NUMBERS] };
+    pub const NONE: ShapedRow = ShapedRow { residual: [0.0; NUMBERS], sensitivity: [[0.0; 2 * HALF]; NUMBERS] };
 }
 
 /// Functions of the rows of a pass.

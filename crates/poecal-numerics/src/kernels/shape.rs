@@ -90,8 +90,7 @@ impl ShapedRows {
     ) {
         let first = plan.shifts + plan.turns.len();
         for (k, (given, gradient)) in self.given.iter().zip(gradient).enumerate() {
-            for (number, (wide, e)) in given.iter().zip(&self.residual).enumerate().take(plan.slots() * HALF)
-            {
+            for (number, (wide, e)) in given.iter().zip(&self.residual).enumerate().take(plan.slots() * HALF) {
                 let value = Lanes::load(simd, wide, 0);
                 (value * Lanes::load(simd, e, 0)).add_to(gradient, part);
                 if FULL {

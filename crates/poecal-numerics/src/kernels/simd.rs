@@ -97,7 +97,10 @@ fn limited_to(word: &str) -> Result<SimdLevel, String> {
     let named = levels.iter().copied().find(|level| level.name() == Some(word));
     named.ok_or_else(|| {
         let names: Vec<&str> = levels.iter().filter_map(|level| level.name()).collect();
-        format!("{VARIABLE}: found `{word}`, expected one of the levels of this machine ({}), or no such variable", names.join(", "))
+        format!(
+            "{VARIABLE}: found `{word}`, expected one of the levels of this machine ({}), or no such variable",
+            names.join(", ")
+        )
     })
 }
 

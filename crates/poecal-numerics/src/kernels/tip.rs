@@ -23,12 +23,7 @@ pub(crate) fn last_links<S: Simd>(
             }
             let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
             for row in &mut link.0 {
-                *row = move_row(
-                    if index == 0 { *row } else { turn_row(simd, *row, step) },
-                    *turns,
-                    cosine,
-                    sine,
-                );
+                *row = move_row(if index == 0 { *row } else { turn_row(simd, *row, step) }, *turns, cosine, sine);
             }
         }
         for (row, out) in link.0.iter().zip(&mut *out) {

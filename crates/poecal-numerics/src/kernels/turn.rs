@@ -50,8 +50,7 @@ impl<S: Simd> ResidualRotations<S> {
         let (measured, predicted) = (apart(measured), apart(predicted));
         let mut out = [LaneBlock::ZERO; 4];
         for lane in 0..S::F64_LANES {
-            let matrix =
-                |columns: &[[LaneBlock; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row].0[lane]);
+            let matrix = |columns: &[[LaneBlock; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row].0[lane]);
             let r = rotation::log(&(matrix(&measured) * matrix(&predicted).transpose()));
             for (wide, value) in out.iter_mut().zip([r.x, r.y, r.z, series::cotc(r.norm_squared())]) {
                 wide.0[lane] = value;

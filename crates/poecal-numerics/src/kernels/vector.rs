@@ -35,10 +35,7 @@ pub(crate) fn parts<S: Simd>(_simd: S) -> std::ops::Range<usize> {
 /// Numbers by their index. `std::array::from_fn` calls a function that is not compiled for the vector instructions, unless the optimiser
 /// inlines it.
 #[inline(always)]
-pub(crate) fn from_index<S: Simd, const N: usize>(
-    simd: S,
-    make: impl Fn(usize) -> Lanes<S>,
-) -> [Lanes<S>; N] {
+pub(crate) fn from_index<S: Simd, const N: usize>(simd: S, make: impl Fn(usize) -> Lanes<S>) -> [Lanes<S>; N] {
     let mut all = [Lanes::splat(simd, 0.0); N];
     let mut k = 0;
     while k < N {

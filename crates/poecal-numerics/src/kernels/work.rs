@@ -21,11 +21,8 @@ pub(crate) struct JointWork {
 }
 
 impl JointWork {
-    const ZERO: JointWork = JointWork {
-        shifts: [[LaneBlock::ZERO; 3]; 2],
-        origin: [LaneBlock::ZERO; 3],
-        gradient: [LaneBlock::ZERO; 4],
-    };
+    const ZERO: JointWork =
+        JointWork { shifts: [[LaneBlock::ZERO; 3]; 2], origin: [LaneBlock::ZERO; 3], gradient: [LaneBlock::ZERO; 4] };
 }
 
 /// Direction of an unknown term in the current rows, times its factor, and its gradient.

@@ -154,11 +154,8 @@ impl<'a, P: LeastSquares> LevenbergMarquardtSearch<'a, P> {
     /// they are not positive definite.
     fn damped_step(&mut self) -> Option<TrialStep> {
         let floor = ROUNDING * self.scale();
-        let damping = if self.reuse.is_frozen() {
-            floor
-        } else {
-            (self.damping * self.normal.mean_square()).max(0.1 * floor)
-        };
+        let damping =
+            if self.reuse.is_frozen() { floor } else { (self.damping * self.normal.mean_square()).max(0.1 * floor) };
         if self.factor.as_ref().is_none_or(|&(before, _)| before != damping) {
             let factor = linalg::cholesky(&self.hessian, self.problem.dim(), damping);
             self.factor = factor.map(|factor| (damping, factor));
@@ -299,8 +296,7 @@ impl<'a, P: LeastSquares> LevenbergMarquardtSearch<'a, P> {
         if self.options.decrement * self.normal.mean_square() < COST_ROUNDING * self.normal.cost {
             let most = self.options.iterations.saturating_sub(self.iterations);
             let floor = ROUNDING * self.scale();
-            let steps =
-                refine::refine(&self.problem, &mut self.state, &mut self.normal, &self.hessian, floor, most);
+            let steps = refine::refine(&self.problem, &mut self.state, &mut self.normal, &self.hessian, floor, most);
             self.iterations += steps;
             self.trace.extend(std::iter::repeat_n(self.normal.mean_square(), steps));
         }
@@ -319,8 +315,7 @@ impl<'a, P: LeastSquares> LevenbergMarquardtSearch<'a, P> {
     fn rules_out_convergence(&self, trial: &TrialStep) -> bool {
         !trial.is_cut
             && trial.damping >= ROUNDING * self.scale()
-            && 0.5 * dot(&trial.step, &self.normal.gradient)
-                >= self.options.decrement * self.normal.mean_square()
+            && 0.5 * dot(&trial.step, &self.normal.gradient) >= self.options.decrement * self.normal.mean_square()
             && norm(&trial.step) >= self.options.step
             && self.normal.mean_square() >= self.problem.rounding()
     }
@@ -352,8 +347,7 @@ impl<'a, P: LeastSquares> LevenbergMarquardtSearch<'a, P> {
             return Some(termination);
         }
         let threshold = self.options.decrement * self.normal.mean_square();
-        if !self.reuse.is_final_step(trial.predicted, threshold) || self.iterations >= self.options.iterations
-        {
+        if !self.reuse.is_final_step(trial.predicted, threshold) || self.iterations >= self.options.iterations {
             return None;
         }
         self.iterations += 1;

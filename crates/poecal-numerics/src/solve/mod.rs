@@ -170,11 +170,8 @@ mod tests {
     #[test]
     fn powells_singular_minimum_is_approached() {
         for options in all_options() {
-            let (x, normal, summary) = minimize(
-                &Plain(powell_singular),
-                [3.0, -1.0, 0.0, 1.0],
-                &Options { iterations: 60, ..options },
-            );
+            let (x, normal, summary) =
+                minimize(&Plain(powell_singular), [3.0, -1.0, 0.0, 1.0], &Options { iterations: 60, ..options });
             assert!(normal.cost < 1e-18 && x.iter().all(|x| x.abs() < 1e-4), "{x:?}, {summary:?}");
         }
     }

@@ -63,16 +63,10 @@ impl Reuse {
 
     /// True if the end of a step is to be evaluated without `JᵀJ`, which stays frozen or is frozen from there on. Steps then converge
     /// so fast that `JᵀJ` can hardly have changed, or this step from a state with its own `JᵀJ` is short.
-    pub(crate) fn may_freeze(
-        &self,
-        predicted: f64,
-        cost: f64,
-        is_well_conditioned: impl FnOnce() -> bool,
-    ) -> bool {
+    pub(crate) fn may_freeze(&self, predicted: f64, cost: f64, is_well_conditioned: impl FnOnce() -> bool) -> bool {
         let is_short = !self.is_frozen && predicted < CLOSE * cost;
-        let is_fast = self.has_noise
-            && self.last_reduction.is_finite()
-            && converges_fast(predicted, self.last_reduction);
+        let is_fast =
+            self.has_noise && self.last_reduction.is_finite() && converges_fast(predicted, self.last_reduction);
         self.is_enabled && (is_short || is_fast && (self.is_frozen || is_well_conditioned()))
     }
 

@@ -51,12 +51,7 @@ fn fixed_problems() -> Vec<Problem> {
         problem("17 Osborne 1", osborne_1, [0.5, 1.5, -1.0, 0.01, 0.02], &[5.46489e-5]),
         // Both are in the paper.
         problem("18 Biggs EXP6", biggs_exp6, [1.0, 2.0, 1.0, 1.0, 1.0, 1.0], &[0.0, 5.65565e-3]),
-        problem(
-            "19 Osborne 2",
-            osborne_2,
-            [1.3, 0.65, 0.65, 0.7, 0.6, 3.0, 5.0, 7.0, 2.0, 4.5, 5.5],
-            &[4.01377e-2],
-        ),
+        problem("19 Osborne 2", osborne_2, [1.3, 0.65, 0.65, 0.7, 0.6, 3.0, 5.0, 7.0, 2.0, 4.5, 5.5], &[4.01377e-2]),
     ]
 }
 
@@ -115,9 +110,7 @@ fn agreement(sum: f64, minimum: f64) -> (bool, f64) {
 
 fn published_sums_are_reached(reuse: bool) {
     let mut short = Vec::new();
-    println!(
-        "problem                        iterations  evaluations  JᵀJ  sum of squares  published  digits  end"
-    );
+    println!("problem                        iterations  evaluations  JᵀJ  sum of squares  published  digits  end");
     for problem in all() {
         let found = solve(problem.start.len(), &problem.start, problem.function, reuse);
         let reached = problem.minima.iter().find(|&&minimum| agreement(found.sum, minimum).0);
@@ -152,8 +145,7 @@ fn published_sums_are_reached_without_reuse() {
 
 #[test]
 fn there_are_35_problems() {
-    let mut numbers: Vec<u32> =
-        all().filter_map(|problem| problem.name.split(' ').next()?.parse().ok()).collect();
+    let mut numbers: Vec<u32> = all().filter_map(|problem| problem.name.split(' ').next()?.parse().ok()).collect();
     numbers.dedup();
     assert_eq!(numbers, (1..=35).collect::<Vec<u32>>());
 }
@@ -162,8 +154,7 @@ fn there_are_35_problems() {
 fn jacobians_are_those_of_differences() {
     for problem in all() {
         // The points are the start, and one near it, where nothing cancels by symmetry.
-        let beside: Vec<f64> =
-            problem.start.iter().zip(1..).map(|(x, k)| 1.01 * x + 0.01 / f64::from(k)).collect();
+        let beside: Vec<f64> = problem.start.iter().zip(1..).map(|(x, k)| 1.01 * x + 0.01 / f64::from(k)).collect();
         for at in [&problem.start, &beside] {
             let error = jacobian_error(at, problem.function);
             println!("{:<30} {error:.1e}", problem.name);

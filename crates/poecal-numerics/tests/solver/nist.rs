@@ -31,12 +31,10 @@ pub(crate) struct Regression {
 
 impl Regression {
     pub(crate) fn read(name: &'static str, model: Model) -> Self {
-        let path =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../poecal-testing/data/nist/{name}.dat"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../poecal-testing/data/nist/{name}.dat"));
         let text = std::fs::read_to_string(path).unwrap();
-        let numbers = |line: &str| -> Vec<f64> {
-            line.split_whitespace().map_while(|word| word.parse().ok()).collect()
-        };
+        let numbers =
+            |line: &str| -> Vec<f64> { line.split_whitespace().map_while(|word| word.parse().ok()).collect() };
         let (mut starts, mut certified) = ([Vec::new(), Vec::new()], Vec::new());
         for line in text.lines().filter(|line| line.trim_start().starts_with('b')) {
             let Some((_, row)) = line.split_once('=') else { continue };
@@ -105,8 +103,7 @@ fn certificates_are_reached(reuse: bool) {
                 found.summary.termination.word()
             );
             let asked = [DIGITS, DIGITS_CLOSE][k];
-            let is_sum_right =
-                if regression.name == "Lanczos1" { found.sum < LANCZOS1_SUM } else { sum >= SUM_DIGITS };
+            let is_sum_right = if regression.name == "Lanczos1" { found.sum < LANCZOS1_SUM } else { sum >= SUM_DIGITS };
             if !(reached >= asked && is_sum_right && found.summary.termination.is_success()) {
                 short.push(format!("{} from start {}: {reached:.1} digits", regression.name, k + 1));
             }

@@ -141,9 +141,8 @@ fn enso(b: &[f64], x: &[f64]) -> (f64, Vec<f64>) {
         + b[5] * first.sin()
         + b[7] * second.cos()
         + b[8] * second.sin();
-    let by_period = |cosine: f64, sine: f64, angle: f64, period: f64| {
-        (cosine * angle.sin() - sine * angle.cos()) * angle / period
-    };
+    let by_period =
+        |cosine: f64, sine: f64, angle: f64, period: f64| (cosine * angle.sin() - sine * angle.cos()) * angle / period;
     let gradient = vec![
         1.0,
         year.cos(),

@@ -146,12 +146,7 @@ pub(crate) fn to_the_last_digits(reuse: bool) -> Options {
 }
 
 /// Minimises to the last digits.
-pub(crate) fn solve(
-    dim: usize,
-    start: &[f64],
-    function: impl Fn(&[f64]) -> Evaluation,
-    reuse: bool,
-) -> Found {
+pub(crate) fn solve(dim: usize, start: &[f64], function: impl Fn(&[f64]) -> Evaluation, reuse: bool) -> Found {
     Plain::new(dim, function).solve(start, reuse)
 }
 

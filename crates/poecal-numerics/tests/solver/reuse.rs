@@ -30,10 +30,8 @@ fn ends_are_the_same_with_reuse_and_without() {
         compare(regression.name, &regression.starts[1], |b| regression.residuals(b));
     }
     // The problems have full rank at their minimum, and no other minimum nearby.
-    let some =
-        ["1 ", "5 ", "7 ", "8 ", "9 ", "14 ", "15 ", "16 ", "17 ", "19 ", "21 ", "25 ", "30 ", "31 ", "32 "];
-    for problem in more_set::all().filter(|problem| some.iter().any(|start| problem.name.starts_with(start)))
-    {
+    let some = ["1 ", "5 ", "7 ", "8 ", "9 ", "14 ", "15 ", "16 ", "17 ", "19 ", "21 ", "25 ", "30 ", "31 ", "32 "];
+    for problem in more_set::all().filter(|problem| some.iter().any(|start| problem.name.starts_with(start))) {
         compare(problem.name, &problem.start, problem.function);
     }
 }

@@ -117,8 +117,7 @@ mod tests {
             step(&series).is_some_and(|it| it.seen_at >= 70 && it.seen_at < 80)
         });
         let seen = seen.count() as f64 / f64::from(lines);
-        let steady =
-            (0..lines).filter(|_| (0..18).any(|_| step(&line(&mut generator, 200, 200, 0.0)).is_some()));
+        let steady = (0..lines).filter(|_| (0..18).any(|_| step(&line(&mut generator, 200, 200, 0.0)).is_some()));
         let steady = steady.count() as f64 / f64::from(lines);
         println!(
             "steps of three spreads seen within ten robots: {:.1} %; false ones in 170 robots of 18 figures: {:.1} %",

@@ -37,17 +37,12 @@ impl ConfigurationRows {
     /// The first columns alone.
     pub(crate) fn first_columns(&self, columns: usize) -> ConfigurationRows {
         let rows = self.values.chunks_exact(self.columns);
-        ConfigurationRows {
-            values: rows.flat_map(|row| row[..columns].iter().copied()).collect(),
-            columns,
-            ..*self
-        }
+        ConfigurationRows { values: rows.flat_map(|row| row[..columns].iter().copied()).collect(), columns, ..*self }
     }
 
     /// The configurations of some indices.
     pub(crate) fn select(&self, some: &[usize]) -> ConfigurationRows {
-        let values =
-            some.iter().flat_map(|&index| self.rows_of_configuration(index).iter().copied()).collect();
+        let values = some.iter().flat_map(|&index| self.rows_of_configuration(index).iter().copied()).collect();
         ConfigurationRows { values, ..*self }
     }
 }

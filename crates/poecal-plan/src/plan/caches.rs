@@ -83,12 +83,7 @@ impl Caches {
         }
     }
 
-    fn apply_of<const S: usize>(
-        &mut self,
-        aim: &CriterionContext,
-        blocks: &ConfigurationRows,
-        change: &PlanChange,
-    ) {
+    fn apply_of<const S: usize>(&mut self, aim: &CriterionContext, blocks: &ConfigurationRows, change: &PlanChange) {
         let (m, c, root) = (self.m, self.c, aim.share.sqrt());
         self.for_each_part(|index, small, long| {
             let rows = blocks.rows_of_configuration(index);
@@ -202,9 +197,7 @@ fn follow<const S: usize>(
                 for j in 0..m {
                     let (pulled, turned) = (&pulled[j * c..(j + 1) * c], &turned[j * c..(j + 1) * c]);
                     let (a, b) = (a[i * m + j], b[i * m + j]);
-                    for ((r, z), (pulled, turned)) in
-                        r.iter_mut().zip(z.iter_mut()).zip(pulled.iter().zip(turned))
-                    {
+                    for ((r, z), (pulled, turned)) in r.iter_mut().zip(z.iter_mut()).zip(pulled.iter().zip(turned)) {
                         *r -= a * pulled;
                         *z += b * pulled - a * turned;
                     }

@@ -28,8 +28,7 @@ impl Capsule {
             return None;
         }
         // The middle of the box about the points is used, not their mean: meshes have more vertices where they are finer.
-        let bound =
-            |pick: fn(f64, f64) -> f64, k: usize| points.iter().map(|it| it[k]).reduce(pick).unwrap_or(0.0);
+        let bound = |pick: fn(f64, f64) -> f64, k: usize| points.iter().map(|it| it[k]).reduce(pick).unwrap_or(0.0);
         let middle = Vector3::from_fn(|k, _| 0.5 * (bound(f64::min, k) + bound(f64::max, k)));
         let mut upper = [0.0; 9];
         for point in points {

@@ -48,9 +48,7 @@ impl Planner<'_> {
             )
         };
         match self.options.criterion {
-            PlanCriterion::Expected | PlanCriterion::D => {
-                best(&aim(DMatrix::identity(g, g), 1.0), &kept, &blocks)
-            }
+            PlanCriterion::Expected | PlanCriterion::D => best(&aim(DMatrix::identity(g, g), 1.0), &kept, &blocks),
             PlanCriterion::A => best(&aim(DMatrix::identity(g, g), 0.0), &kept, &blocks),
             PlanCriterion::E | PlanCriterion::G => {
                 self.choose_minimax(&kept, &blocks, |moments| best(&aim(moments, 0.0), &kept, &blocks))
@@ -77,8 +75,7 @@ impl Planner<'_> {
             let value = if is_e {
                 let (values, vectors) = linalg::symmetric_eigen(covariance.as_slice(), g);
                 let most = values.last().copied().unwrap_or(0.0);
-                let weights =
-                    nalgebra::DVector::from_iterator(g, values.iter().map(|it| (it / most).powi(3)));
+                let weights = nalgebra::DVector::from_iterator(g, values.iter().map(|it| (it / most).powi(3)));
                 moments = &vectors * DMatrix::from_diagonal(&weights) * vectors.transpose();
                 most
             } else {
@@ -101,12 +98,11 @@ impl Planner<'_> {
     /// Searches around each configuration for better ones.
     pub(crate) fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut ConfigurationRows) -> Result<()> {
         let robot = &self.experiment.robot;
-        let checker = Checker::new(robot, &self.options.conditions)
-            .with_avoided(&self.avoided, self.experiment.length_m());
+        let checker =
+            Checker::new(robot, &self.options.conditions).with_avoided(&self.avoided, self.experiment.length_m());
         let travel = TravelDistance::new(robot, self.experiment.length_m());
         let least = self.options.conditions.separation_rad;
-        let kinds: Vec<ReadingKind> =
-            robot.reading_names().iter().map(|name| robot.reading_kind(name)).collect();
+        let kinds: Vec<ReadingKind> = robot.reading_names().iter().map(|name| robot.reading_kind(name)).collect();
         for round in 0..ROUNDS {
             let share = round as f64 / (ROUNDS - 1) as f64;
             let step = STEPS[0] * (STEPS[1] / STEPS[0]).powf(share);
@@ -139,8 +135,7 @@ impl Planner<'_> {
             improve_nearby(&self.aim, &self.kept, rows, &blocks, &owners, |row, proposal| {
                 let own = &proposals[proposal * width..(proposal + 1) * width];
                 let others = readings.iter().enumerate().filter(|it| it.0 != row);
-                let is_apart =
-                    least <= 0.0 || others.clone().all(|(_, it)| travel.distance(own, it) >= least);
+                let is_apart = least <= 0.0 || others.clone().all(|(_, it)| travel.distance(own, it) >= least);
                 if is_apart {
                     readings[row].copy_from_slice(own);
                 }

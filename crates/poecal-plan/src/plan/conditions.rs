@@ -181,8 +181,7 @@ impl<'a> Checker<'a> {
             let segments: Vec<_> = capsules.iter().map(|it| it.segment(&frames)).collect();
             for (is_always, &(a, b)) in always.iter_mut().zip(&pairs) {
                 *is_always = *is_always
-                    && segment_distance(&segments[a], &segments[b])
-                        < capsules[a].radius_m + capsules[b].radius_m;
+                    && segment_distance(&segments[a], &segments[b]) < capsules[a].radius_m + capsules[b].radius_m;
             }
         }
         let mut left_out: Vec<(String, String)> = Vec::new();
@@ -229,10 +228,7 @@ impl<'a> Checker<'a> {
         let frames = self.robot.joint_poses(readings);
         let segments: Vec<[Vector3<f64>; 2]> = capsules.iter().map(|it| it.segment(&frames)).collect();
         let parts = self.parts(readings, &frames, &segments);
-        if keep_out
-            .iter()
-            .any(|corners| parts.iter().any(|(segment, radius)| is_in(segment, *radius, corners)))
-        {
+        if keep_out.iter().any(|corners| parts.iter().any(|(segment, radius)| is_in(segment, *radius, corners))) {
             return Some(Obstacle::KeepOut);
         }
         // The frame of a joint on the base does not move, at any position.
@@ -301,11 +297,8 @@ impl<'a> Checker<'a> {
                 let segment = capsule.segment(&frames);
                 // The link before may be slimmer beside the target than its capsule: then it hides only lines of sight past its middle.
                 let is_before = body.joint().map(|joint| self.robot.body_before(joint)) == Some(capsule.body);
-                let slim = if is_before {
-                    segment_distance(&segment, &[place, place]) - AT_TARGET_M
-                } else {
-                    f64::INFINITY
-                };
+                let slim =
+                    if is_before { segment_distance(&segment, &[place, place]) - AT_TARGET_M } else { f64::INFINITY };
                 let around = capsule.radius_m.min(slim);
                 capsule.body != body && segment_distance(&segment, &[sight.place, end]) < around
             };
@@ -321,11 +314,7 @@ impl<'a> Checker<'a> {
         let robot = self.robot;
         let open = |name: &&String| {
             robot.reading_kind(name) != ReadingKind::Factor
-                && robot
-                    .joints
-                    .iter()
-                    .filter(|joint| joint.reading.name == **name)
-                    .all(|it| it.limits.is_none())
+                && robot.joints.iter().filter(|joint| joint.reading.name == **name).all(|it| it.limits.is_none())
         };
         robot.reading_names().iter().filter(open).cloned().collect()
     }

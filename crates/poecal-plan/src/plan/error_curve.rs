@@ -107,10 +107,8 @@ pub fn expected_errors(robot: &Robot, readings: &[f64], fit: &PlannedFit) -> Res
     let blocks = experiment.blocks(readings)?;
     let corrected = if blocks.columns > experiment.geometry() { 1.0 } else { 0.0 };
     let weights = CriterionWeights { calibrated: 1.0, corrected, determinant: 0.0 };
-    let aim =
-        CriterionContext::new(&experiment.prior, experiment.moments(&workspace), weights, experiment.share());
-    let (_, squares) =
-        CovarianceState::new(&aim, &blocks.gram(0..blocks.count())).ok_or_else(undetermined_error)?;
+    let aim = CriterionContext::new(&experiment.prior, experiment.moments(&workspace), weights, experiment.share());
+    let (_, squares) = CovarianceState::new(&aim, &blocks.gram(0..blocks.count())).ok_or_else(undetermined_error)?;
     let errors = ExpectedErrors::new(&experiment, &squares);
     Ok(ListExpectation { errors, robot_error_is_a_guess: experiment.is_guess })
 }
@@ -166,8 +164,7 @@ mod tests {
             // The whole is the sum of squares of its parts.
             let total = curve[0].expected;
             assert!(
-                (total.calibrated_m().powi(2) - total.undetermined_m.powi(2) - total.robot_m.powi(2)).abs()
-                    < 1e-18
+                (total.calibrated_m().powi(2) - total.undetermined_m.powi(2) - total.robot_m.powi(2)).abs() < 1e-18
             );
         }
     }

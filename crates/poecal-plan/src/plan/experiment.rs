@@ -11,9 +11,7 @@ use poecal_calibrate::{unknowns, whitened_rows};
 use poecal_fit::analysis::{PlannedSession, predicted_data};
 use poecal_fit::parameters::Parameter;
 use poecal_fit::problem::{Layout, Prior, Problem, TermPrior};
-use poecal_fit::state::{
-    Estimate, Linkage, PackedValues, RowChain, Session, Unknowns, nominal_estimate, radian_m,
-};
+use poecal_fit::state::{Estimate, Linkage, PackedValues, RowChain, Session, Unknowns, nominal_estimate, radian_m};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::{CorrectionExtent, CorrectionModel, Corrections, Robot, Sizes, Tolerance};
 use poecal_model::simulate::random_configuration;
@@ -77,12 +75,7 @@ impl PlannedExperiment {
     }
 
     /// An experiment of begun measurements, about an estimate that predicts them: its rows are like theirs.
-    pub(crate) fn from_begun(
-        robot: &Robot,
-        fit: &PlannedFit,
-        data: &Dataset,
-        registered: &Estimate,
-    ) -> Result<Self> {
+    pub(crate) fn from_begun(robot: &Robot, fit: &PlannedFit, data: &Dataset, registered: &Estimate) -> Result<Self> {
         PlannedExperiment::make(robot, fit, Some((data, registered)))
     }
 
@@ -111,8 +104,7 @@ impl PlannedExperiment {
         let (model, unknowns) =
             if has_terms { (corrected.robot.clone(), unknowns) } else { (robot.clone(), Unknowns::USUAL) };
         let mut generator = ChaCha8Rng::seed_from_u64(SEED);
-        let sample: Vec<f64> =
-            (0..SAMPLE).flat_map(|_| random_configuration(&robot, &mut generator)).collect();
+        let sample: Vec<f64> = (0..SAMPLE).flat_map(|_| random_configuration(&robot, &mut generator)).collect();
         let width = robot.reading_names().len();
         let mut found = PlannedExperiment {
             length_m: radian_m(&robot, &PackedValues::new(&robot, &sample, width)),
@@ -205,8 +197,7 @@ impl PlannedExperiment {
     pub(crate) fn rows(&self, data: &Dataset) -> (DMatrix<f64>, nalgebra::DVector<f64>) {
         let packed = PackedValues::from_dataset(&self.model, data);
         let rows = data.all_rows();
-        let problem =
-            Problem::new(self.session_of(data, &packed), rows.clone(), self.free.clone(), self.session.noise);
+        let problem = Problem::new(self.session_of(data, &packed), rows.clone(), self.free.clone(), self.session.noise);
         let (_, jacobian, residuals) = whitened_rows(&problem, &self.estimate, &rows);
         let (g, c) = (self.geometry.len(), self.turn.ncols());
         let mut own = DMatrix::zeros(jacobian.nrows(), g + c);
@@ -281,9 +272,7 @@ impl PlannedExperiment {
     pub(crate) fn each_moment(&self, readings: &[f64]) -> Vec<DMatrix<f64>> {
         let (own, targets) = self.motions(readings);
         let each = 3 * targets;
-        (0..own.nrows() / each)
-            .map(|at| own.view((at * each, 0), (each, self.geometry())).into_owned())
-            .collect()
+        (0..own.nrows() / each).map(|at| own.view((at * each, 0), (each, self.geometry())).into_owned()).collect()
     }
 
     /// Three rows of each target in each configuration, and the number of targets.
@@ -292,8 +281,7 @@ impl PlannedExperiment {
         let layout = Layout::new(self.free.clone(), self.length_m);
         let packed = PackedValues::new(&self.model, readings, self.width());
         let linkage = Linkage::new(&self.estimate);
-        let (mut chain, mut twists) =
-            (RowChain::default(), vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()]);
+        let (mut chain, mut twists) = (RowChain::default(), vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()]);
         let targets = self.targets;
         let mut found = DMatrix::zeros(3 * packed.rows() * targets, layout.dim());
         for row in 0..packed.rows() {

@@ -60,8 +60,7 @@ impl<'a> Planner<'a> {
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let planned = experiment.robot.clone();
         let (avoided, stay) = (options.avoided_readings(), options.fitted_readings());
-        let checker =
-            Checker::new(&planned, &options.conditions).with_avoided(&avoided, experiment.length_m());
+        let checker = Checker::new(&planned, &options.conditions).with_avoided(&avoided, experiment.length_m());
         let mut refusals = RefusalCounts::default();
         let (candidates, origins) = match &options.list {
             Some(list) => keep_measurable(&checker, (list, width), &options.conditions, &mut refusals),
@@ -72,9 +71,7 @@ impl<'a> Planner<'a> {
         };
         let workspace = match &options.workspace {
             Some(workspace) => thin_out(workspace, width),
-            None => draw(&checker, WORKSPACE, &mut generator, |checker, readings| {
-                checker.robot(readings).is_none()
-            }),
+            None => draw(&checker, WORKSPACE, &mut generator, |checker, readings| checker.robot(readings).is_none()),
         };
         let count = candidates.len() / width;
         let new = options.new_of(RowPurpose::Fit, stay.len() / width);
@@ -175,11 +172,7 @@ fn refuse_many_numbers(experiment: &PlannedExperiment) -> Result<()> {
 }
 
 /// The information of the rows that stay, and their number.
-fn kept_information(
-    experiment: &PlannedExperiment,
-    stay: &[f64],
-    columns: usize,
-) -> Result<(DMatrix<f64>, usize)> {
+fn kept_information(experiment: &PlannedExperiment, stay: &[f64], columns: usize) -> Result<(DMatrix<f64>, usize)> {
     if stay.is_empty() {
         return Ok((DMatrix::zeros(columns, columns), 0));
     }
@@ -189,8 +182,7 @@ fn kept_information(
 
 /// The aim of a plan whose errors are not yet weighted against each other.
 fn aim_at(experiment: &PlannedExperiment, workspace: &[f64], has_terms: bool) -> CriterionContext {
-    let weights =
-        CriterionWeights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
+    let weights = CriterionWeights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
     CriterionContext::new(&experiment.prior, experiment.moments(workspace), weights, experiment.share())
 }
 

@@ -116,9 +116,7 @@ impl PlanOptions {
     pub fn fitted_readings(&self) -> Vec<f64> {
         let replaced = self.replaced_rows();
         let stays = |row: &&PlannedRow| {
-            row.part == RowPurpose::Fit
-                && !row.returns
-                && replaced.iter().all(|it| it.readings != row.readings)
+            row.part == RowPurpose::Fit && !row.returns && replaced.iter().all(|it| it.readings != row.readings)
         };
         self.kept.iter().filter(stays).flat_map(|row| row.readings.clone()).collect()
     }

@@ -21,11 +21,7 @@ impl TravelDistance {
     }
 
     pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
-        self.scales
-            .iter()
-            .zip(a.iter().zip(b))
-            .map(|(scale, (a, b))| scale * (a - b).abs())
-            .fold(0.0, f64::max)
+        self.scales.iter().zip(a.iter().zip(b)).map(|(scale, (a, b))| scale * (a - b).abs()).fold(0.0, f64::max)
     }
 
     /// An order of configurations with a short path from `start` on: from each to the nearest, then shortened by reversing parts of it.

@@ -76,27 +76,20 @@ impl RunningFit {
         let session = Session::new(robot, data, &packed, options.fit.session.device_free);
         let prior = Prior::from_session(&session, options.fit.tolerance.unwrap_or(Tolerance::WIDE));
         let noise = options.fit.session.noise;
-        let registration =
-            Registration { session, rows: &rows, noise, targets_free: true, prior: Some((&prior, 1.0)) };
+        let registration = Registration { session, rows: &rows, noise, targets_free: true, prior: Some((&prior, 1.0)) };
         let registered = register(&registration, &nominal_estimate(robot, data)).0;
         let experiment = PlannedExperiment::from_begun(robot, &options.fit, data, &registered)?;
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let configurations = Configurations::new(robot);
-        let mut draw = |count: usize| -> Vec<f64> {
-            (0..count).flat_map(|_| configurations.random(&mut generator)).collect()
-        };
+        let mut draw =
+            |count: usize| -> Vec<f64> { (0..count).flat_map(|_| configurations.random(&mut generator)).collect() };
         let candidates = options.candidates.clone().unwrap_or_else(|| draw(CANDIDATES));
         let workspace = options.workspace.clone().unwrap_or_else(|| draw(WORKSPACE));
         let blocks = experiment.blocks(&candidates)?;
         let n = blocks.columns;
         let corrected = if n > experiment.geometry() { 1.0 } else { 0.0 };
         let weights = CriterionWeights { calibrated: 1.0, corrected, determinant: 0.0 };
-        let aim = CriterionContext::new(
-            &experiment.prior,
-            experiment.moments(&workspace),
-            weights,
-            experiment.share(),
-        );
+        let aim = CriterionContext::new(&experiment.prior, experiment.moments(&workspace), weights, experiment.share());
         let mut known = RunningFit {
             experiment,
             aim,
@@ -153,8 +146,7 @@ impl RunningFit {
         (0..m).for_each(|k| covariance[(k, k)] += 1.0);
         let (values, _) = linalg::symmetric_eigen(covariance.as_slice(), m);
         let largest = values.last().copied().unwrap_or(1.0);
-        let square =
-            linalg::solve_symmetric(covariance, &residuals).map_or(f64::INFINITY, |it| it.dot(&residuals));
+        let square = linalg::solve_symmetric(covariance, &residuals).map_or(f64::INFINITY, |it| it.dot(&residuals));
         let limit = f_quantile(BY_CHANCE, m as f64, self.freedom) * m as f64 * self.scale;
         let sigma_m = self.experiment.noise()[Quantity::Position];
         RowComparison {
@@ -176,8 +168,7 @@ impl RunningFit {
         let own = data.readings(at);
         let chance = f_quantile(BY_CHANCE, observation.measurement.dim() as f64, self.freedom);
         let enough = f_quantile(EXPLAINED, observation.measurement.dim() as f64, self.freedom) / chance;
-        let ratio =
-            |readings: &[f64]| with(readings).map_or(f64::INFINITY, |one| self.innovation(&one).ratio);
+        let ratio = |readings: &[f64]| with(readings).map_or(f64::INFINITY, |one| self.innovation(&one).ratio);
         let mut best: (f64, Option<Mistake>) = (enough, None);
         let mut propose = |ratio: f64, mistake: Mistake| {
             if ratio < best.0 {
@@ -201,12 +192,7 @@ impl RunningFit {
     }
 
     /// The change of one reading that explains a row best, and the remaining ratio.
-    fn joint_off(
-        &self,
-        with: &impl Fn(&[f64]) -> Option<Dataset>,
-        own: &[f64],
-        joint: usize,
-    ) -> Option<(f64, f64)> {
+    fn joint_off(&self, with: &impl Fn(&[f64]) -> Option<Dataset>, own: &[f64], joint: usize) -> Option<(f64, f64)> {
         let mut readings = own.to_vec();
         let mut by = 0.0;
         // Several steps: an offset may be large.

@@ -57,8 +57,7 @@ impl PlannedExperiment {
                 self.session.kind.word()
             ));
         }
-        self.numbers =
-            data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
+        self.numbers = data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
         let packed = PackedValues::from_dataset(&self.model, &data);
         let rows = data.all_rows();
         let mut estimate = match begun {
@@ -102,8 +101,7 @@ impl PlannedExperiment {
     fn count_places(&self, sample: &[f64]) -> Result<usize> {
         let often = sample[..self.width()].repeat(MOST_PLACES);
         let (data, _) = predicted_data(&self.robot, &often, &self.session)?;
-        let mut sights: Vec<(usize, usize)> =
-            data.observations.iter().map(|row| (row.station, row.target)).collect();
+        let mut sights: Vec<(usize, usize)> = data.observations.iter().map(|row| (row.station, row.target)).collect();
         sights.sort_unstable();
         sights.dedup();
         Ok(sights.len().max(1))
@@ -172,8 +170,7 @@ impl PlannedExperiment {
         let Some(inverse) = inverse(&h) else { return Ok(0.0) };
         let a = inverse * gram.view((0, g), (g, c));
         let (mgg, mgc) = (moments.view((0, 0), (g, g)), moments.view((0, g), (g, c)));
-        let bias =
-            (a.transpose() * (mgg * &a)).trace() - 2.0 * a.dot(&mgc) + moments.view((g, g), (c, c)).trace();
+        let bias = (a.transpose() * (mgg * &a)).trace() - 2.0 * a.dot(&mgc) + moments.view((g, g), (c, c)).trace();
         Ok(bias.max(0.0).sqrt())
     }
 

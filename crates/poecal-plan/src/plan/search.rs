@@ -55,9 +55,7 @@ impl PlanSearch<'_> {
             if chosen.len() == count {
                 break;
             }
-            let Some(change) =
-                state.change(self.aim, blocks.rows_of_configuration(best), blocks.numbers, 1.0)
-            else {
+            let Some(change) = state.change(self.aim, blocks.rows_of_configuration(best), blocks.numbers, 1.0) else {
                 break;
             };
             state.apply(&change, blocks.numbers);
@@ -89,8 +87,7 @@ impl PlanSearch<'_> {
         if self.aim.weights.corrected > 0.0 || self.blocks.count() > MANY {
             return best;
         }
-        let value =
-            |list: &[usize]| self.squares(list).map_or(f64::INFINITY, |it| it.value(&self.aim.weights));
+        let value = |list: &[usize]| self.squares(list).map_or(f64::INFINITY, |it| it.value(&self.aim.weights));
         let mut least = value(&best);
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(3);
@@ -152,8 +149,7 @@ impl PlanSearch<'_> {
         let gram = self.kept + self.blocks.gram(chosen.iter().copied());
         let Some((state, _)) = CovarianceState::new(self.aim, &gram) else { return chosen.to_vec() };
         let caches = Caches::new(&state, self.aim, self.blocks);
-        let mut ranked: Vec<(f64, usize)> =
-            (0..count).map(|at| (caches.gain(at, &self.aim.weights), at)).collect();
+        let mut ranked: Vec<(f64, usize)> = (0..count).map(|at| (caches.gain(at, &self.aim.weights), at)).collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let best = ranked.iter().take(ACTIVE).map(|it| it.1);
         let mut active: Vec<usize> = best.chain(chosen.iter().copied()).collect();
@@ -247,11 +243,9 @@ pub(crate) fn improve_nearby(
         let caches = Caches::new(&state, aim, &candidates);
         let kept = caches.gain(own.len(), &aim.weights);
         let best =
-            (0..own.len()).map(|at| (at, caches.gain(at, &aim.weights))).fold(None, |best, (at, gain)| {
-                match best {
-                    Some((_, most)) if gain <= most => best,
-                    _ => Some((at, gain)),
-                }
+            (0..own.len()).map(|at| (at, caches.gain(at, &aim.weights))).fold(None, |best, (at, gain)| match best {
+                Some((_, most)) if gain <= most => best,
+                _ => Some((at, gain)),
             });
         if let Some((at, gain)) = best
             && gain > kept + least
@@ -275,8 +269,7 @@ mod tests {
     fn setup(fit: &PlannedFit) -> (PlannedExperiment, CriterionContext, ConfigurationRows, Vec<f64>) {
         let experiment = PlannedExperiment::new(&elbow(), fit).unwrap();
         let mut generator = ChaCha8Rng::seed_from_u64(5);
-        let readings: Vec<f64> =
-            (0..120).flat_map(|_| random_configuration(&elbow(), &mut generator)).collect();
+        let readings: Vec<f64> = (0..120).flat_map(|_| random_configuration(&elbow(), &mut generator)).collect();
         let moments = experiment.moments(&readings);
         let weights = CriterionWeights { calibrated: 1.0, corrected: 2.0, determinant: 1e-9 };
         let aim = CriterionContext::new(&experiment.prior, moments, weights, experiment.share());
@@ -346,11 +339,7 @@ mod tests {
                 value(&order[..24])
             })
             .fold(f64::INFINITY, f64::min);
-        println!(
-            "greedy {:.3e}, exchanged {:.3e}, best of 200 random {best:.3e}",
-            value(&greedy),
-            value(&found)
-        );
+        println!("greedy {:.3e}, exchanged {:.3e}, best of 200 random {best:.3e}", value(&greedy), value(&found));
         assert!(value(&found) <= value(&greedy) && value(&found) < best);
         let mut rows = found.clone();
         rows.sort_unstable();

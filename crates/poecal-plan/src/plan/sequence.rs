@@ -33,8 +33,7 @@ impl Planner<'_> {
             let start = rows.last().map_or(home.clone(), |row| row.readings.clone());
             let slices: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             for at in travel.shortest_order(&start, &slices) {
-                let candidate =
-                    if part == RowPurpose::Fit { origins.get(at).copied().flatten() } else { None };
+                let candidate = if part == RowPurpose::Fit { origins.get(at).copied().flatten() } else { None };
                 rows.push(PlannedRow { readings: all[at].clone(), part, returns: false, candidate });
             }
         }

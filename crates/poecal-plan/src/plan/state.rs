@@ -58,12 +58,7 @@ impl WorkspaceErrors {
 
 impl CriterionContext {
     /// Prior information with unit priors of modes.
-    pub(crate) fn new(
-        prior: &DMatrix<f64>,
-        moments: DMatrix<f64>,
-        weights: CriterionWeights,
-        share: f64,
-    ) -> Self {
+    pub(crate) fn new(prior: &DMatrix<f64>, moments: DMatrix<f64>, weights: CriterionWeights, share: f64) -> Self {
         let (g, n) = (prior.nrows(), moments.nrows());
         let mut all = DMatrix::identity(n, n);
         all.view_mut((0, 0), (g, g)).copy_from(prior);
@@ -95,10 +90,7 @@ pub(crate) struct CovarianceState {
 
 impl CovarianceState {
     /// State by the information of measurements; `None` if it is not positive definite with the prior.
-    pub(crate) fn new(
-        aim: &CriterionContext,
-        gram: &DMatrix<f64>,
-    ) -> Option<(CovarianceState, WorkspaceErrors)> {
+    pub(crate) fn new(aim: &CriterionContext, gram: &DMatrix<f64>) -> Option<(CovarianceState, WorkspaceErrors)> {
         let (g, c) = (aim.geometry, aim.modes());
         let [mgg, mgc, mcc] = aim.parts();
         let prior = aim.prior.view((0, 0), (g, g));
@@ -114,8 +106,7 @@ impl CovarianceState {
         // H⁻¹ (share² N + Λ) H⁻¹ with share N = H - Λ.
         let noise = spread.trace();
         let true_noise = aim.share * noise + (1.0 - aim.share) * p.dot(&prior);
-        let mut squares =
-            WorkspaceErrors { noise, true_noise, terms: bias.max(0.0), corrected: 0.0, determinant };
+        let mut squares = WorkspaceErrors { noise, true_noise, terms: bias.max(0.0), corrected: 0.0, determinant };
         let (all, q) = if aim.weights.corrected > 0.0 {
             let all = inverse(&(gram + &aim.prior))?;
             let spread = &aim.moments * &all;
@@ -129,13 +120,7 @@ impl CovarianceState {
     }
 
     /// Change by adding (`sign` 1) or removing (-1) these rows; `None` if the rest would not be positive definite.
-    pub(crate) fn change(
-        &self,
-        aim: &CriterionContext,
-        rows: &[f64],
-        numbers: usize,
-        sign: f64,
-    ) -> Option<PlanChange> {
+    pub(crate) fn change(&self, aim: &CriterionContext, rows: &[f64], numbers: usize, sign: f64) -> Option<PlanChange> {
         let (g, c) = (aim.geometry, aim.modes());
         let n = g + c;
         let scaled = scale_rows(rows, aim);
@@ -212,8 +197,7 @@ pub(crate) fn own_rows(
     for i in 0..numbers {
         let row = &rows[i * (g + c)..(i + 1) * (g + c)];
         for column in 0..c {
-            let own =
-                |matrix: &DMatrix<f64>| dot(&row[..g], &matrix.as_slice()[column * g..(column + 1) * g]);
+            let own = |matrix: &DMatrix<f64>| dot(&row[..g], &matrix.as_slice()[column * g..(column + 1) * g]);
             r[i * c + column] = row[g + column] - own(a);
             z[i * c + column] = own(e);
         }

@@ -13,8 +13,7 @@ use poecal_model::simulate::random_configuration;
 use poecal_numerics::error::{ErrorKind, Result};
 
 /// Vertices of the diagonal plane C1-C2-C7-C8 of a cube, in half sides, and its middle: P1 to P5.
-const POSES: [[f64; 3]; 5] =
-    [[0.0; 3], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0], [1.0, -1.0, -1.0]];
+const POSES: [[f64; 3]; 5] = [[0.0; 3], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, -1.0], [1.0, -1.0, -1.0]];
 /// The other vertices.
 const OTHERS: [[f64; 3]; 4] = [[1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]];
 /// Share of half a diagonal at which P2 to P5 are: 10 % of the diagonal from the vertices.
@@ -120,17 +119,15 @@ impl ReachingArm<'_> {
         near: &[f64],
     ) -> std::result::Result<Vec<(Pose, Vec<f64>)>, usize> {
         let first = self.reach(middle, near).ok_or(0usize)?;
-        let pose =
-            |(at, half): (usize, Vector3<f64>)| self.walk((middle, &first), half, STEPS_TO_POSE).ok_or(at);
+        let pose = |(at, half): (usize, Vector3<f64>)| self.walk((middle, &first), half, STEPS_TO_POSE).ok_or(at);
         vertices(sides_m).into_iter().enumerate().map(pose).collect()
     }
 
     /// True if all vertices of a cube are reached from its middle, and the base is outside.
     fn is_whole(&self, middle: &Pose, side_m: f64, first: &[f64]) -> bool {
         let vertices = POSES.iter().skip(1).chain(&OTHERS);
-        let is_reached = |vertex: &[f64; 3]| {
-            self.walk((middle, first), Vector3::from(*vertex) * (0.5 * side_m), STEPS).is_some()
-        };
+        let is_reached =
+            |vertex: &[f64; 3]| self.walk((middle, first), Vector3::from(*vertex) * (0.5 * side_m), STEPS).is_some();
         let beside = middle.translation.xy().abs().max();
         let is_above = middle.translation.z - 0.5 * side_m >= self.floor_m;
         beside > 0.5 * side_m + BASE * self.arm.reach_m() && is_above && vertices.into_iter().all(is_reached)
@@ -278,10 +275,7 @@ mod tests {
         let mut flat = corners(0.1);
         flat[1][0] += 0.05;
         assert!(
-            test_cube(&robot, Some(flat), None)
-                .unwrap_err()
-                .to_string()
-                .contains("or a plane, of which one is zero")
+            test_cube(&robot, Some(flat), None).unwrap_err().to_string().contains("or a plane, of which one is zero")
         );
         (flat[0][2], flat[1][2]) = (middle[2], middle[2]);
         let plane = test_cube(&robot, Some(flat), None).unwrap();

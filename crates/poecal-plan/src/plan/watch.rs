@@ -35,14 +35,7 @@ impl Watch {
                 options.fit.session.kind.word()
             ));
         }
-        Ok(Watch {
-            robot: robot.clone(),
-            options,
-            good: Vec::new(),
-            known: None,
-            history: Vec::new(),
-            last: None,
-        })
+        Ok(Watch { robot: robot.clone(), options, good: Vec::new(), known: None, history: Vec::new(), last: None })
     }
 
     /// Judges a row of the data, in the order of their arrival, and fits it if it is as expected.
@@ -52,23 +45,13 @@ impl Watch {
     pub fn add(&mut self, data: &Dataset, row: usize) -> Result<WatchedRow> {
         let index = u32::try_from(row).unwrap_or(u32::MAX);
         let before = self.last.replace(index);
-        let mut found = WatchedRow {
-            row,
-            mistake: None,
-            ratio: None,
-            noticed_m: None,
-            now: None,
-            after: None,
-            next: None,
-        };
+        let mut found =
+            WatchedRow { row, mistake: None, ratio: None, noticed_m: None, now: None, after: None, next: None };
         if before.is_some_and(|before| is_repeated(data, before as usize, row)) {
             found.mistake = Some(Mistake::Repeats);
             return Ok(found);
         }
-        let is_new = self
-            .known
-            .as_ref()
-            .is_some_and(|known| known.names != [data.targets.len(), data.station_count()]);
+        let is_new = self.known.as_ref().is_some_and(|known| known.names != [data.targets.len(), data.station_count()]);
         if is_new {
             self.known = None;
         }
@@ -114,8 +97,7 @@ impl Watch {
         let known = self.known.as_ref()?;
         let before = *self.history.len().checked_sub(TOGETHER + 1).and_then(|at| self.history.get(at))?;
         let target = data.observations.get(*self.good.last()? as usize)?.target;
-        let of_target =
-            |row: &&u32| data.observations.get(**row as usize).is_some_and(|it| it.target == target);
+        let of_target = |row: &&u32| data.observations.get(**row as usize).is_some_and(|it| it.target == target);
         let last: Vec<u32> = self.good.iter().rev().filter(of_target).take(TOGETHER).copied().collect();
         if last.len() < TOGETHER {
             return None;
@@ -152,8 +134,7 @@ mod tests {
     /// Rows of a simulated session of points, one with an error of 5 mm, one with the wrong sign of joint 5, one stale.
     #[test]
     fn mistakes_are_named_as_they_arrive() {
-        let made =
-            Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
+        let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
         let mut data = made.data.select_rows(&[]);
         for row in 0..made.data.len() {
             let mut readings = made.data.readings(row).to_vec();
@@ -173,8 +154,7 @@ mod tests {
             robot_error: Some(crate::plan::RobotError { calibrated_m: 5e-5, corrected_m: None }),
             ..PlannedFit::default()
         };
-        let mut watch =
-            Watch::new(&elbow(), WatchOptions { fit, seed: 1, ..WatchOptions::default() }).unwrap();
+        let mut watch = Watch::new(&elbow(), WatchOptions { fit, seed: 1, ..WatchOptions::default() }).unwrap();
         let mut named = Vec::new();
         for row in 0..data.len() {
             let found = watch.add(&data, row).unwrap();

@@ -98,9 +98,7 @@ impl<'a> Instructions<'a> {
             return;
         }
         let set = |name: &str| match tokens {
-            [word, equals, value @ ..] if is(word, name) && equals.is(b'=') => {
-                Some(super::whole_number(value))
-            }
+            [word, equals, value @ ..] if is(word, name) && equals.is(b'=') => Some(super::whole_number(value)),
             [word, ..] if is(word, name) => Some(None),
             _ => None,
         };
@@ -148,9 +146,7 @@ impl<'a> Instructions<'a> {
                 continue;
             }
             if offset.is_some() {
-                list(
-                    "displaced by an offset, which is left as it is: at most the position itself is corrected",
-                );
+                list("displaced by an offset, which is left as it is: at most the position itself is corrected");
             }
             if let Some(position) = inside.get(..1).and_then(super::whole_number) {
                 self.of_position.entry(position).or_default().push(self.moves.len());

@@ -64,9 +64,8 @@ pub(crate) fn parse(text: &[u8], given: &StatedFrames, axes: &ControllerAxes) ->
 /// True if a line of the section `/APPL` states that the program follows a moving line.
 fn follows_line(line: &[u8]) -> bool {
     let text = String::from_utf8_lossy(line).to_ascii_uppercase();
-    let number = text
-        .split_once(':')
-        .and_then(|(_, it)| it.trim().trim_end_matches([';', ',']).trim().parse::<u32>().ok());
+    let number =
+        text.split_once(':').and_then(|(_, it)| it.trim().trim_end_matches([';', ',']).trim().parse::<u32>().ok());
     text.contains("LINE_TRACK_SCHEDULE_NUMBER") && number.is_some_and(|it| it > 0)
 }
 
@@ -93,11 +92,7 @@ impl FanucBuilder<'_> {
             let is_double = count.get(&position.number).is_some_and(|it| *it > 1);
             let moves = instructions.moves_to(position.number);
             let (line, name) = (position.line, position.name.clone());
-            let made = if is_double {
-                Err("stated more than once".to_owned())
-            } else {
-                self.target(&position, &moves)
-            };
+            let made = if is_double { Err("stated more than once".to_owned()) } else { self.target(&position, &moves) };
             match made {
                 Ok((target, tool, frame, stated)) => {
                     let at = self.out.targets.len();
@@ -155,8 +150,7 @@ impl FanucBuilder<'_> {
         match group {
             PositionGroup::Joints(numbers, external) => {
                 let (external, _) = self.external(external)?;
-                let numbers =
-                    self.axes.join_readings(numbers, &external).ok_or("it has other axes than the robot")?;
+                let numbers = self.axes.join_readings(numbers, &external).ok_or("it has other axes than the robot")?;
                 Ok((
                     ProgramTarget { line, name, numbers, meant: PoseMeaning::Joints },
                     None,

@@ -20,8 +20,7 @@ pub(crate) fn parse(variables: &KrlVariables, given: &StatedFrames) -> ParsedPro
         if NO_TARGETS.iter().any(|it| key.starts_with(it)) {
             continue;
         }
-        let is_target =
-            matches!(variable.value, KrlValue::Pose(..) | KrlValue::Joints(_) | KrlValue::Broken(_));
+        let is_target = matches!(variable.value, KrlValue::Pose(..) | KrlValue::Joints(_) | KrlValue::Broken(_));
         let refused = match (&variable.value, variables.of_name(key)) {
             (KrlValue::Broken(reason), _) => Some(*reason),
             (_, Err(reason)) if is_target => Some(reason),
@@ -38,9 +37,7 @@ pub(crate) fn parse(variables: &KrlVariables, given: &StatedFrames) -> ParsedPro
                 out.motions.push(motion(out.targets.len(), variable.line, *status, place, variables, given));
                 out.targets.push(target(variable, numbers.clone(), PoseMeaning::Pose(PoseForm::Abc)));
             }
-            KrlValue::Joints(numbers) => {
-                out.targets.push(target(variable, numbers.clone(), PoseMeaning::Joints))
-            }
+            KrlValue::Joints(numbers) => out.targets.push(target(variable, numbers.clone(), PoseMeaning::Joints)),
             KrlValue::Broken(_) | KrlValue::Place(_) | KrlValue::Name(_) | KrlValue::Other => {}
         }
     }
@@ -79,17 +76,11 @@ fn motion(
 }
 
 /// A tool or base by its number, from the file or the user; number 0 is the identity.
-pub(crate) fn numbered_frame(
-    list: &str,
-    number: i64,
-    variables: &KrlVariables,
-    given: &StatedFrames,
-) -> Option<Pose> {
+pub(crate) fn numbered_frame(list: &str, number: i64, variables: &KrlVariables, given: &StatedFrames) -> Option<Pose> {
     if number == 0 {
         return Some(Pose::identity());
     }
-    let user =
-        |name: &str| if list == "TOOL_DATA" { given.tool(Some(name)) } else { given.frame(Some(name)) };
+    let user = |name: &str| if list == "TOOL_DATA" { given.tool(Some(name)) } else { given.frame(Some(name)) };
     user(&number.to_string()).or_else(|| stated_pose(&format!("{list}[{number}]"), variables))
 }
 

@@ -121,11 +121,7 @@ impl<'r> KrlReader<'r> {
             let numbers = match &variable.value {
                 KrlValue::Pose(numbers, status) if *status != Status::default() => numbers,
                 KrlValue::Joints(numbers) => numbers,
-                KrlValue::Pose(..)
-                | KrlValue::Broken(_)
-                | KrlValue::Place(_)
-                | KrlValue::Name(_)
-                | KrlValue::Other => {
+                KrlValue::Pose(..) | KrlValue::Broken(_) | KrlValue::Place(_) | KrlValue::Name(_) | KrlValue::Other => {
                     continue;
                 }
             };
@@ -247,12 +243,9 @@ impl<'r> KrlReader<'r> {
     /// The pose that is assigned to `$TOOL` or `$BASE`.
     fn setting(&self, tokens: &[Token], is_tool: bool) -> ActiveFrame {
         let list = if is_tool { "TOOL_DATA" } else { "BASE_DATA" };
-        let user =
-            |name: &str| if is_tool { self.given.tool(Some(name)) } else { self.given.frame(Some(name)) };
+        let user = |name: &str| if is_tool { self.given.tool(Some(name)) } else { self.given.frame(Some(name)) };
         let pose = match value(self.text, tokens, self.axes) {
-            KrlValue::Name(key) if key == "$NULLFRAME" || (key == "$WORLD" && !is_tool) => {
-                Some(Pose::identity())
-            }
+            KrlValue::Name(key) if key == "$NULLFRAME" || (key == "$WORLD" && !is_tool) => Some(Pose::identity()),
             KrlValue::Name(key) => {
                 match key.strip_prefix(list).and_then(|it| it.strip_prefix('[')?.strip_suffix(']')) {
                     Some(number) => return self.numbered_setting(list, number.parse().ok()),
@@ -269,11 +262,7 @@ impl<'r> KrlReader<'r> {
     fn bas(&mut self, rest: &[Token]) {
         let Some((inside, _)) = bracket(rest, b'(', b')') else { return };
         let arguments = parts(inside);
-        let word = arguments
-            .first()
-            .and_then(|it| it.last())
-            .map_or("", |it| it.text(self.text))
-            .to_ascii_uppercase();
+        let word = arguments.first().and_then(|it| it.last()).map_or("", |it| it.text(self.text)).to_ascii_uppercase();
         let number = match arguments.get(1) {
             Some([Token { kind: TokenKind::Number(value, 0), .. }]) => Some(*value as i64),
             _ => None,
@@ -355,11 +344,7 @@ impl<'r> KrlReader<'r> {
         let line = tokens.first().map_or(0, |it| it.line);
         let (found, line, name) = match value(self.text, tokens, self.axes) {
             KrlValue::Name(key) if key.starts_with('$') => {
-                return Err(if self.variables.of_name(&key).is_err() {
-                    reason::COMPUTED
-                } else {
-                    reason::SEVERAL
-                });
+                return Err(if self.variables.of_name(&key).is_err() { reason::COMPUTED } else { reason::SEVERAL });
             }
             KrlValue::Name(key) => {
                 let variable = self.variables.of_name(&key)?;

@@ -8,7 +8,8 @@ pub(crate) const PARTIAL: &str = "it does not state all values: the others are t
 pub(crate) use crate::axes::NO_EXTERNAL;
 pub(crate) const EXTERNAL: &str = "external axes that the model does not have are not at zero";
 pub(crate) const COUNT: &str = "it has other axes than the robot";
-pub(crate) const RELATIVE: &str = "the motion is by an amount from where the robot is, which is corrected: a small error of the amount stays";
+pub(crate) const RELATIVE: &str =
+    "the motion is by an amount from where the robot is, which is corrected: a small error of the amount stays";
 pub(crate) const ANGLE: &str = "with CA, the arc does not end there";
 pub(crate) const FRAME: &str = "a frame: whether motions go there is not in this file";
 pub(crate) const PLACE: &str =

@@ -146,15 +146,7 @@ impl KrlVariables {
         }
     }
 
-    fn assign(
-        &mut self,
-        key: &str,
-        text: &[u8],
-        name: &Token,
-        value: KrlValue,
-        times: usize,
-        is_frame: bool,
-    ) {
+    fn assign(&mut self, key: &str, text: &[u8], name: &Token, value: KrlValue, times: usize, is_frame: bool) {
         let name_as_written = match key.find('[') {
             Some(at) => format!("{}{}", name.text(text), &key[at..]),
             None => name.text(text).to_owned(),
@@ -244,8 +236,7 @@ impl<'t> AggregateFields<'t> {
     fn has_external(&self, axes: &ControllerAxes, names: &[String]) -> bool {
         let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
         let is_of_model = |name: &str| (1..=axes.external.len()).any(|it| name == format!("E{it}"));
-        let mut external =
-            self.0.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
+        let mut external = self.0.iter().filter(|it| is_axis(&it.0, b'E') && !is_known(&it.0) && !is_of_model(&it.0));
         external.any(|it| it.1.as_ref().is_none_or(|number| number.value != 0.0))
     }
 }
@@ -342,8 +333,7 @@ fn joints(fields: &AggregateFields<'_>, axes: &ControllerAxes) -> Result<KrlValu
         let scale = axes.scale(index, 1.0_f64.to_radians(), 1e-3);
         numbers.push(Number { scale, ..fields.number(&name, reason::PARTIAL)? });
     }
-    let is_own =
-        |&it: &usize| if is_named { is_axis(&names[it], b'A') } else { !axes.external.contains(&it) };
+    let is_own = |&it: &usize| if is_named { is_axis(&names[it], b'A') } else { !axes.external.contains(&it) };
     let own = (0..axes.count()).filter(is_own).count();
     if fields.axes(b'A') == own { Ok(KrlValue::Joints(numbers)) } else { Err(reason::COUNT) }
 }

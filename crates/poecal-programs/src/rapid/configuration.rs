@@ -26,8 +26,7 @@ const ROUNDING: f64 = 1e-6;
 impl RapidConfiguration {
     /// True if the quarter turns of a configuration of the nominal arm (rad) fit, borders included.
     pub(crate) fn fits(&self, q: &[f64]) -> bool {
-        q.len() == 6
-            && self.quarters.iter().zip(JOINTS).all(|(&quarter, joint)| is_in(quarter, q.get(joint), MARGIN))
+        q.len() == 6 && self.quarters.iter().zip(JOINTS).all(|(&quarter, joint)| is_in(quarter, q.get(joint), MARGIN))
     }
 
     /// True if the branch fits, as far as it is determined, for arms with defined sides. The sides of the lower arm are defined if the lower arm

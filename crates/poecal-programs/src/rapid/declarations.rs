@@ -77,10 +77,7 @@ impl Declarations {
         let mut out = Declarations::default();
         for (index, routine) in outline.routines.iter().enumerate() {
             for name in &routine.parameters {
-                out.add(
-                    DataScope::Routine(index),
-                    DataDeclaration::new(RapidDataKind::Parameter, name.clone(), 0),
-                );
+                out.add(DataScope::Routine(index), DataDeclaration::new(RapidDataKind::Parameter, name.clone(), 0));
             }
         }
         for statement in &outline.statements {
@@ -166,8 +163,7 @@ impl Declarations {
             let Some((routine, of)) = outline.routines.iter().enumerate().find(named) else { return true };
             let parameter = |name: &String| self.places.get(&(DataScope::Routine(routine), name.clone()));
             let own = of.parameters.iter().filter_map(parameter).filter_map(|&at| self.data.get(at));
-            data.given.len() >= MOST_GIVEN
-                || own.into_iter().any(|it| it.changed.is_some() || !it.given.is_empty())
+            data.given.len() >= MOST_GIVEN || own.into_iter().any(|it| it.changed.is_some() || !it.given.is_empty())
         })
     }
 
@@ -243,11 +239,7 @@ fn declaration(tokens: &[Token], text: &[u8]) -> Option<(DataDeclaration, bool)>
     let written_value = rest.get(at + 1..).filter(|it| is_kept && !it.is_empty());
     let value = written_value.map(|it| value(it, text, 0));
     Some((
-        DataDeclaration {
-            dimensions,
-            value,
-            ..DataDeclaration::new(sort, token_text(text, &name), name.line)
-        },
+        DataDeclaration { dimensions, value, ..DataDeclaration::new(sort, token_text(text, &name), name.line) },
         is_local,
     ))
 }

@@ -38,8 +38,7 @@ pub(crate) fn parse(text: &[u8], given: &StatedFrames, axes: &ControllerAxes) ->
     let mut declared = Declarations::read(&outline, &tokens, text);
     let modals = [ModalSwitch::Displacement, ModalSwitch::Lines, ModalSwitch::Joints]
         .map(|switch| ModalState::follow(switch, &outline, &tokens, text));
-    let mut reader =
-        RapidReader { text, modals, moves: RapidMoves::default(), last: None, listed: Vec::new() };
+    let mut reader = RapidReader { text, modals, moves: RapidMoves::default(), last: None, listed: Vec::new() };
     for (index, statement) in outline.statements.iter().enumerate() {
         reader.statement(index, statement, &tokens, &mut declared);
     }
@@ -58,13 +57,7 @@ struct RapidReader<'a> {
 }
 
 impl RapidReader<'_> {
-    fn statement(
-        &mut self,
-        index: usize,
-        statement: &RapidStatement,
-        tokens: &[Token],
-        declared: &mut Declarations,
-    ) {
+    fn statement(&mut self, index: usize, statement: &RapidStatement, tokens: &[Token], declared: &mut Declarations) {
         declared.follow(statement, tokens, self.text);
         let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
         if statement.routine.is_none() {
@@ -144,9 +137,7 @@ impl RapidReader<'_> {
             let of = of.clone();
             let before = self.last.take().map(|(number, _)| number);
             let number = match instruction.arguments.get(at).copied() {
-                Some(written) => {
-                    self.read_target(&name, written, layout.is_joints, statement, of, before, declared)
-                }
+                Some(written) => self.read_target(&name, written, layout.is_joints, statement, of, before, declared),
                 None => {
                     self.list(statement.line, excerpt(text, own), "an argument of this move is missing");
                     None

@@ -31,8 +31,8 @@ pub(crate) struct ArgumentLayout {
 pub(crate) fn layout(name: &str) -> Option<ArgumentLayout> {
     use ToolArgument::{Last, Place};
     let (targets, tool): (&'static [usize], ToolArgument) = match name {
-        "movej" | "movel" | "moveabsj" | "movejdo" | "moveldo" | "movejao" | "movelao" | "movejgo"
-        | "movelgo" | "movejsync" | "movelsync" | "trigglios" => (&[0], Place(3)),
+        "movej" | "movel" | "moveabsj" | "movejdo" | "moveldo" | "movejao" | "movelao" | "movejgo" | "movelgo"
+        | "movejsync" | "movelsync" | "trigglios" => (&[0], Place(3)),
         "movec" | "movecdo" | "movecao" | "movecgo" | "movecsync" => (&[0, 1], Place(4)),
         "triggj" | "triggl" | "triggabsj" => (&[0], Place(4)),
         "triggc" => (&[0, 1], Place(5)),
@@ -64,8 +64,7 @@ impl<'a> Instruction<'a> {
         if first.kind != TokenKind::Word {
             return None;
         }
-        let mut out =
-            Instruction { name: lower_case(text, first), arguments: Vec::new(), options: Vec::new() };
+        let mut out = Instruction { name: lower_case(text, first), arguments: Vec::new(), options: Vec::new() };
         for part in cut(rest, b',')? {
             let mut pieces = cut(part, b'\\')?.into_iter();
             let argument = pieces.next().unwrap_or_default();
@@ -109,9 +108,7 @@ pub(crate) fn argument<'a>(tokens: &'a [Token], text: &[u8]) -> TargetNotation<'
 fn argument_in<'a>(tokens: &'a [Token], text: &[u8], depth: usize) -> TargetNotation<'a> {
     match tokens {
         [name] if name.kind == TokenKind::Word => TargetNotation::Name(lower_case(text, name), None),
-        [name, open, inner @ .., close]
-            if name.kind == TokenKind::Word && open.is(b'{') && close.is(b'}') =>
-        {
+        [name, open, inner @ .., close] if name.kind == TokenKind::Word && open.is(b'{') && close.is(b'}') => {
             let Some(parts) = cut(inner, b',') else { return TargetNotation::Computed };
             let whole = |it: &Number| it.value.fract() == 0.0 && (1.0..1e9).contains(&it.value);
             let index = |part: &[Token]| signed_number(part).filter(whole).map(|it| it.value as usize);

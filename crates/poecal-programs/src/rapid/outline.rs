@@ -63,10 +63,7 @@ pub(crate) fn outline(tokens: &[Token], text: &[u8]) -> RapidOutline {
         tokens,
         text,
         at: 0,
-        out: RapidOutline {
-            blocks: vec![StatementBlock { outermost: 0, end: 1 }],
-            ..RapidOutline::default()
-        },
+        out: RapidOutline { blocks: vec![StatementBlock { outermost: 0, end: 1 }], ..RapidOutline::default() },
         open: vec![0],
         routine: None,
         module: 0,

@@ -78,8 +78,9 @@ impl RapidBuilder<'_> {
         let reason = match (data.is_double, data.changed, data.given.first()) {
             (true, ..) => Some("declared more than once".to_owned()),
             (_, Some(line), _) => Some(format!("changed by the program on line {line}")),
-            (.., given) => given
-                .map(|it| format!("given to {} on line {}, whose use of it is not known", it.to, it.line)),
+            (.., given) => {
+                given.map(|it| format!("given to {} on line {}, whose use of it is not known", it.to, it.line))
+            }
         };
         if let Some(reason) = reason {
             return self.out.list(data.line, &data.name, reason);
@@ -97,20 +98,11 @@ impl RapidBuilder<'_> {
     }
 
     /// Adds a target by its value and its position.
-    fn read_value(
-        &mut self,
-        name: String,
-        line: usize,
-        value: &RapidValue,
-        is_joints: bool,
-        to: &TargetReference,
-    ) {
+    fn read_value(&mut self, name: String, line: usize, value: &RapidValue, is_joints: bool, to: &TargetReference) {
         let line = first_number(value).map_or(line, |at| self.lines.partition_point(|end| *end < at) + 1);
         let own = self.by_place.get(to).cloned().unwrap_or_default();
         let any: &[RapidMove] = match to {
-            TargetReference::Data(at, index) if !index.is_empty() => {
-                self.moves.to_any.get(at).map_or(&[], |it| it)
-            }
+            TargetReference::Data(at, index) if !index.is_empty() => self.moves.to_any.get(at).map_or(&[], |it| it),
             TargetReference::Data(..) | TargetReference::InPlace(_) => &[],
         };
         let moves: Vec<&RapidMove> =
@@ -152,8 +144,7 @@ impl RapidBuilder<'_> {
         value: &RapidValue,
         moves: &[&RapidMove],
     ) -> Result<(Vec<Number>, PoseMeaning, Vec<MotionSettings>), String> {
-        const SHAPE: &str =
-            "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
+        const SHAPE: &str = "not written as [[x,y,z],[q1,q2,q3,q4],[cf1,cf4,cf6,cfx],[external axes]] with numbers";
         let Some([place, quaternion, configuration, external]) = value.list(4) else {
             return Err(SHAPE.into());
         };
@@ -212,13 +203,7 @@ impl RapidBuilder<'_> {
 
     fn frame(&self, held: &MoveFrame) -> Result<Pose, String> {
         let stated = self.given.frame(Some(self.name(held, "wobj0")));
-        self.known_pose(
-            ("work object", "--work-object"),
-            held,
-            RapidDataKind::WorkObject,
-            stated,
-            work_object,
-        )
+        self.known_pose(("work object", "--work-object"), held, RapidDataKind::WorkObject, stated, work_object)
     }
 
     fn name<'b>(&'b self, held: &'b MoveFrame, built_in: &'b str) -> &'b str {
@@ -249,9 +234,7 @@ impl RapidBuilder<'_> {
             {
                 Err(format!("its {what} `{name}` is not known"))
             }
-            MoveFrame::Unknown(_) => {
-                Err(format!("its {what} `{name}` is not in this file: state it by {flag}"))
-            }
+            MoveFrame::Unknown(_) => Err(format!("its {what} `{name}` is not in this file: state it by {flag}")),
             MoveFrame::Data(at) => {
                 let data = self.declared.data.get(*at).filter(|it| it.sort == sort && !it.is_double);
                 let data = data.ok_or_else(|| format!("its {what} `{name}` is not known"))?;
@@ -260,12 +243,9 @@ impl RapidBuilder<'_> {
                 }
                 if let Some(given) = self.declared.changes_it(data, self.outline) {
                     let (to, line) = (&given.to, given.line);
-                    return Err(format!(
-                        "its {what} `{name}` is given to {to} on line {line}, which may change it"
-                    ));
+                    return Err(format!("its {what} `{name}` is given to {to} on line {line}, which may change it"));
                 }
-                let value =
-                    data.value.as_ref().ok_or_else(|| format!("its {what} `{name}` has no numbers"))?;
+                let value = data.value.as_ref().ok_or_else(|| format!("its {what} `{name}` has no numbers"))?;
                 read(value).map_err(|reason| format!("its {what} `{name}` {reason}"))
             }
         }
@@ -295,9 +275,7 @@ impl RapidBuilder<'_> {
 /// The configuration `[cf1,cf4,cf6,cfx]`.
 fn configuration(numbers: &[Number]) -> StatedConfiguration {
     match numbers.iter().map(|it| it.value as i32).collect::<Vec<i32>>()[..] {
-        [cf1, cf4, cf6, branch] => {
-            StatedConfiguration::Rapid(RapidConfiguration { quarters: [cf1, cf4, cf6], branch })
-        }
+        [cf1, cf4, cf6, branch] => StatedConfiguration::Rapid(RapidConfiguration { quarters: [cf1, cf4, cf6], branch }),
         _ => StatedConfiguration::Nothing,
     }
 }

@@ -23,8 +23,7 @@ pub(crate) fn tokens(text: &[u8]) -> Vec<Token> {
             line_start = out.len();
             continue;
         }
-        let follows =
-            |sign: u8| out.last().is_some_and(|it| it.is(sign) && it.range.end == token.range.start);
+        let follows = |sign: u8| out.last().is_some_and(|it| it.is(sign) && it.range.end == token.range.start);
         if token.is(b'=') && follows(b':') {
             if let Some(colon) = out.last_mut() {
                 colon.kind = TokenKind::Sign(ASSIGN);
@@ -64,8 +63,7 @@ impl RapidValue {
 
     /// The numbers of a list with `count` entries.
     pub(crate) fn numbers(&self, count: usize) -> Option<Vec<Number>> {
-        let number =
-            |it: &RapidValue| if let RapidValue::Number(number) = it { Some(number.clone()) } else { None };
+        let number = |it: &RapidValue| if let RapidValue::Number(number) = it { Some(number.clone()) } else { None };
         self.list(count)?.iter().map(number).collect()
     }
 
@@ -89,14 +87,10 @@ pub(crate) fn value(tokens: &[Token], text: &[u8], depth: usize) -> RapidValue {
             TokenKind::Text => RapidValue::Text(only.range.len() <= 2),
             TokenKind::Number(..) | TokenKind::Sign(_) | TokenKind::LineEnd => RapidValue::Other,
         },
-        [open, inner @ .., close] if open.is(b'[') && close.is(b']') && depth < DEEPEST => {
-            match cut(inner, b',') {
-                Some(parts) => {
-                    RapidValue::List(parts.into_iter().map(|it| value(it, text, depth + 1)).collect())
-                }
-                None => RapidValue::Other,
-            }
-        }
+        [open, inner @ .., close] if open.is(b'[') && close.is(b']') && depth < DEEPEST => match cut(inner, b',') {
+            Some(parts) => RapidValue::List(parts.into_iter().map(|it| value(it, text, depth + 1)).collect()),
+            None => RapidValue::Other,
+        },
         _ => RapidValue::Other,
     }
 }

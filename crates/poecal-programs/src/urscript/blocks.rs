@@ -60,8 +60,7 @@ impl Program {
     /// Reads a text; `make` makes nodes of each statement and of each condition.
     pub(crate) fn read(text: &[u8], rules: &LexicalRules, make: NodeMaker<'_>) -> Result<Self> {
         let blocks = ProgramBlocks::new();
-        let mut program =
-            Program { main: Vec::new(), blocks, threads_move: false, threads_set: false, thread: None };
+        let mut program = Program { main: Vec::new(), blocks, threads_move: false, threads_set: false, thread: None };
         let mut scanner = Scanner::new(text, rules);
         let mut line = Vec::new();
         while scanner.statement(&mut line).is_some() {

@@ -108,10 +108,7 @@ impl UrScriptReader<'_> {
             let is_target = match self.variables.value(self.text, argument, self.axes) {
                 UrScriptValue::Pose(_) | UrScriptValue::Joints(_) => true,
                 UrScriptValue::Name(name) => {
-                    matches!(
-                        self.variables.of_name(&name),
-                        Ok(UrScriptValue::Pose(_) | UrScriptValue::Joints(_))
-                    )
+                    matches!(self.variables.of_name(&name), Ok(UrScriptValue::Pose(_) | UrScriptValue::Joints(_)))
                 }
                 UrScriptValue::Broken(_) | UrScriptValue::Other => false,
             };
@@ -126,11 +123,8 @@ impl UrScriptReader<'_> {
             [name, sign, rest @ ..] if name.kind == TokenKind::Word && sign.is(b'=') => rest,
             all => all,
         };
-        let found = if way == UrScriptMotionType::Unknown {
-            Err(reason::UNKNOWN.to_owned())
-        } else {
-            self.aim(argument)
-        };
+        let found =
+            if way == UrScriptMotionType::Unknown { Err(reason::UNKNOWN.to_owned()) } else { self.aim(argument) };
         match found {
             Ok(aim) => UrScriptStep::Move { aim, line: word.line, way },
             Err(reason) => {
@@ -183,9 +177,7 @@ impl UrScriptReader<'_> {
         match (name.text(self.text), &arguments[..]) {
             ("pose_trans", [frame, pose]) => {
                 let frame = match self.variables.value(self.text, frame, self.axes) {
-                    UrScriptValue::Pose(numbers) => {
-                        PoseFrame::Is(FORM.of_numbers(&numbers).ok_or_else(computed)?)
-                    }
+                    UrScriptValue::Pose(numbers) => PoseFrame::Is(FORM.of_numbers(&numbers).ok_or_else(computed)?),
                     UrScriptValue::Name(name) => PoseFrame::Named(name),
                     UrScriptValue::Joints(_) | UrScriptValue::Broken(_) | UrScriptValue::Other => {
                         return Err(computed());
@@ -212,8 +204,7 @@ impl UrScriptReader<'_> {
             match name {
                 "qnear" => match self.literal_value(value) {
                     Some(UrScriptValue::Joints(numbers)) => {
-                        aim.stated =
-                            StatedConfiguration::Near(numbers.iter().map(Number::scaled_value).collect());
+                        aim.stated = StatedConfiguration::Near(numbers.iter().map(Number::scaled_value).collect());
                     }
                     _ => return Err(reason::COMPUTED.to_owned()),
                 },
@@ -239,10 +230,7 @@ impl UrScriptReader<'_> {
     fn tool(&self, tokens: &[Token]) -> ActiveFrame {
         let named = || match self.variables.value(self.text, tokens, self.axes) {
             UrScriptValue::Name(name) => self.given.tool(Some(&name)),
-            UrScriptValue::Pose(_)
-            | UrScriptValue::Joints(_)
-            | UrScriptValue::Broken(_)
-            | UrScriptValue::Other => None,
+            UrScriptValue::Pose(_) | UrScriptValue::Joints(_) | UrScriptValue::Broken(_) | UrScriptValue::Other => None,
         };
         match self.literal_value(tokens) {
             Some(UrScriptValue::Pose(numbers)) => FORM.of_numbers(&numbers),
@@ -275,11 +263,7 @@ impl UrScriptReader<'_> {
             UrScriptStep::Moving(true) => state.frame = ActiveFrame::Unknown,
             UrScriptStep::Moving(false) => state.frame = ActiveFrame::Unset,
             UrScriptStep::Away => state.last = None,
-            UrScriptStep::Move {
-                aim: MotionArgument { target, frames, stated, tool, is_inverse },
-                line,
-                way,
-            } => {
+            UrScriptStep::Move { aim: MotionArgument { target, frames, stated, tool, is_inverse }, line, way } => {
                 let product = frames.iter().map(frame_of).try_fold(at_start, |all, it| it.map(|it| all * it));
                 let frame = product.as_ref().ok().filter(|_| state.frame != ActiveFrame::Unknown).copied();
                 let tool = tool.unwrap_or(state.tool).pose_or(given.tool(None));

@@ -108,9 +108,7 @@ impl UrScriptVariables {
             _ => match list(tokens) {
                 None => UrScriptValue::Other,
                 Some((count, _)) if count != axes.count() => UrScriptValue::Broken(reason::COUNT),
-                Some((_, numbers)) => {
-                    numbers.map_or(UrScriptValue::Broken(reason::EXPRESSIONS), UrScriptValue::Joints)
-                }
+                Some((_, numbers)) => numbers.map_or(UrScriptValue::Broken(reason::EXPRESSIONS), UrScriptValue::Joints),
             },
         }
     }

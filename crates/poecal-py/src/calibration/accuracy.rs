@@ -61,10 +61,7 @@ impl ModelAccuracy {
         let found = self.0.iter().find(|(quantity, _)| quantity.key() == name);
         found.map(|(_, found)| found.into()).ok_or_else(|| {
             let known: Vec<&str> = self.0.iter().map(|(quantity, _)| quantity.key()).collect();
-            PyAttributeError::new_err(format!(
-                "found no errors named `{name}`, expected {}",
-                known.join(" or ")
-            ))
+            PyAttributeError::new_err(format!("found no errors named `{name}`, expected {}", known.join(" or ")))
         })
     }
 
@@ -76,8 +73,7 @@ impl ModelAccuracy {
 impl ModelAccuracy {
     /// Root mean square of each measured quantity.
     fn words(&self) -> String {
-        let words =
-            self.0.iter().map(|(quantity, it)| format!("{} {}", number(it.rms), quantity.unit().symbol()));
+        let words = self.0.iter().map(|(quantity, it)| format!("{} {}", number(it.rms), quantity.unit().symbol()));
         words.collect::<Vec<_>>().join(", ")
     }
 
@@ -119,8 +115,7 @@ impl SetAccuracy {
     fn __repr__(&self) -> String {
         let [nominal, registered, calibrated] =
             [self.nominal, self.registered, self.calibrated].map(|it| it.leading_rms());
-        let corrected =
-            self.corrected.map_or_else(String::new, |model| format!(", corrected {}", model.leading_rms()));
+        let corrected = self.corrected.map_or_else(String::new, |model| format!(", corrected {}", model.leading_rms()));
         format!(
             "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated}{corrected} {} RMS>",
             self.count,

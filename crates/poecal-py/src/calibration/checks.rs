@@ -67,17 +67,11 @@ impl Calibration {
         measurements.check_robot(self.calibrated_robot()?)?;
         let limits = accept_limits(accept, accept_model)?;
         let refit = refit.map(|it| it.choose("refit", words::REFIT)).transpose()?;
-        let [refit_frame, refit_tool, refit_moved] =
-            [RefitChoice::Device, RefitChoice::Tool, RefitChoice::Auto]
-                .map(|what| refit.iter().flatten().any(|it| *it == what));
+        let [refit_frame, refit_tool, refit_moved] = [RefitChoice::Device, RefitChoice::Tool, RefitChoice::Auto]
+            .map(|what| refit.iter().flatten().any(|it| *it == what));
         let judging = ValidationOptions { refit_frame, refit_moved, refit_tool, accept: limits.as_ref() };
-        let places = validation::ValidateOutputs::reserve(
-            py,
-            (self, measurements),
-            (out.as_deref(), force),
-            report,
-            history,
-        )?;
+        let places =
+            validation::ValidateOutputs::reserve(py, (self, measurements), (out.as_deref(), force), report, history)?;
         places.judge(py, (self, measurements), &judging, record.unwrap_or_default())
     }
 

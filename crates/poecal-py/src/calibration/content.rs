@@ -154,8 +154,7 @@ impl Calibration {
     pub(crate) fn of_state(state: CalibrationState) -> PyResult<Self> {
         let CalibrationState { nominal, robot, file, residuals, summary } = state;
         let file = CalibrationFile::parse(&file, UNWRITTEN).map_err(raise)?;
-        let residuals =
-            residuals.map(|text| Residuals::parse(&text, "residuals.csv")).transpose().map_err(raise)?;
+        let residuals = residuals.map(|text| Residuals::parse(&text, "residuals.csv")).transpose().map_err(raise)?;
         Ok(Calibration::from_files(Robot::of_state(nominal)?, robot, file, residuals, summary))
     }
 
@@ -201,7 +200,8 @@ impl Calibration {
                 Ok(fit.residuals.get_or_init(|| Residuals::from_calibration(&fit.data.data, &fit.calibration)))
             }
             ContentSource::Written(written) => written.residuals.as_ref().ok_or_else(|| {
-                let message = "found no residuals.csv beside the calibration.json, expected it: name it in Calibration.read";
+                let message =
+                    "found no residuals.csv beside the calibration.json, expected it: name it in Calibration.read";
                 argument("residuals", message)
             }),
         }
@@ -210,9 +210,7 @@ impl Calibration {
     /// The program's table.
     pub(super) fn summary(&self) -> &str {
         match &self.found {
-            ContentSource::Fit(fit) => {
-                fit.summary.get_or_init(|| report::summary(self.file(), report::Detail::Short))
-            }
+            ContentSource::Fit(fit) => fit.summary.get_or_init(|| report::summary(self.file(), report::Detail::Short)),
             ContentSource::Written(written) => &written.summary,
         }
     }
@@ -238,8 +236,7 @@ impl Calibration {
         match &self.found {
             ContentSource::Fit(fit) => Ok(&fit.calibration.verdict),
             ContentSource::Written(written) => written.file.verdict.as_ref().ok_or_else(|| {
-                let message =
-                    "found a calibration without a verdict, expected one: calibrate again with this version";
+                let message = "found a calibration without a verdict, expected one: calibrate again with this version";
                 raise(ErrorKind::Model.error(message))
             }),
         }

@@ -44,12 +44,7 @@ pub(crate) struct Findings {
 
 impl Findings {
     /// Findings of a result's own JSON.
-    pub(crate) fn of_json(
-        class: &'static str,
-        text: String,
-        answer: impl Into<String>,
-        json: String,
-    ) -> Self {
+    pub(crate) fn of_json(class: &'static str, text: String, answer: impl Into<String>, json: String) -> Self {
         Findings { class, text, answer: answer.into(), json, warnings: Vec::new() }
     }
 
@@ -166,11 +161,8 @@ pub(crate) fn identify(
         ),
         device_free: frame_word(device_frame)? == DeviceFrameKnowledge::Unknown,
     };
-    let fit = PlannedFit {
-        session,
-        robot_error: robot_error_mm.or_else(|| model.left_error()),
-        ..PlannedFit::default()
-    };
+    let fit =
+        PlannedFit { session, robot_error: robot_error_mm.or_else(|| model.left_error()), ..PlannedFit::default() };
     let work = || {
         let found = analysis::identify(&model.robot, &joints.readings, &session)?;
         let is_free = session.kind.is_chosen_freely();
@@ -233,10 +225,7 @@ pub(crate) fn offsets(
         let frames = stated.map(|it| it.choose(name, words::OUTER_FRAME)).transpose()?;
         for frame in frames.into_iter().flatten() {
             if ends[usize::from(frame == words::OuterFrame::Tip)].replace(end).is_some_and(|it| it != end) {
-                return Err(argument(
-                    name,
-                    "found a frame that is in free too, expected it in one of the two",
-                ));
+                return Err(argument(name, "found a frame that is in free too, expected it in one of the two"));
             }
         }
     }
@@ -339,8 +328,7 @@ pub(crate) fn track(
     let told = report::TrackReport::new(&found, &file.robot.name, ValidationInputs::default())
         .with_record(record.unwrap_or_default());
     if let Some(page) = page {
-        py.detach(|| page.write(report::visit_page(&told, file, current_time().as_deref())))
-            .map_err(raise)?;
+        py.detach(|| page.write(report::visit_page(&told, file, current_time().as_deref()))).map_err(raise)?;
     }
     Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.with_warnings(&found.notes))
 }
@@ -358,11 +346,7 @@ fn visit_place(
 }
 
 /// Knowledge of a visit, by the words of `track` and `recalibrate`.
-pub(crate) fn visit_options(
-    device: &str,
-    tool: &str,
-    repeatability_mm: Option<f64>,
-) -> PyResult<TrackOptions> {
+pub(crate) fn visit_options(device: &str, tool: &str, repeatability_mm: Option<f64>) -> PyResult<TrackOptions> {
     Ok(TrackOptions {
         device_is_known: one_of("device", device, words::DEVICE)?,
         tool_is_anew: one_of("tool", tool, words::TOOL)?,

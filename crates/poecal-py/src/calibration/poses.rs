@@ -62,9 +62,7 @@ impl Calibration {
             })
             .map_err(raise)?;
         match found.doubts {
-            Some(doubts) => {
-                Prediction { target: found.target, poses: found.poses, doubts }.into_bound_py_any(py)
-            }
+            Some(doubts) => Prediction { target: found.target, poses: found.poses, doubts }.into_bound_py_any(py),
             None => poses(py, &found.poses, joints.single),
         }
     }

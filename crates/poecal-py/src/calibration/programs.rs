@@ -60,24 +60,14 @@ pub(super) fn compensate<'py>(
     let factors = reach::factors(&actual.model.robot, factors)?;
     let language = reach::language(path, stated.language.as_deref())?;
     let change = reach::change(nearest, most)?;
-    let third_axis =
-        stated.third_axis.map(|word| one_of("third_axis", word, words::THIRD_AXIS)).transpose()?;
+    let third_axis = stated.third_axis.map(|word| one_of("third_axis", word, words::THIRD_AXIS)).transpose()?;
     if third_axis.is_some() && language != Language::Fanuc {
-        return Err(argument(
-            "third_axis",
-            format!("found it for {}, expected a program of FANUC", language.title()),
-        ));
+        return Err(argument("third_axis", format!("found it for {}, expected a program of FANUC", language.title())));
     }
     let ControllerCounts { controller, is_third_axis_open } =
         calibration.file().controller_counts(&taught.robot, third_axis).map_err(raise)?;
-    let mut options = ProgramOptions {
-        change,
-        check,
-        each: true,
-        controller,
-        is_third_axis_open,
-        ..ProgramOptions::new(language)
-    };
+    let mut options =
+        ProgramOptions { change, check, each: true, controller, is_third_axis_open, ..ProgramOptions::new(language) };
     stated.give(&mut options.given, language)?;
     options.given = options.given.with_taught_frames(&taught.base, &taught.tool);
     reach::program(py, (&taught.robot, &actual.model.robot), path, &factors, &options)

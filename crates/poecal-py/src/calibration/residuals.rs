@@ -2,9 +2,7 @@
 
 use numpy::{PyArray1, PyArray2};
 use poecal_model::measurement::Quantity;
-use poecal_results::residuals::{
-    ResidualRow, Residuals as Rows, RowDiagnostics, columns as names, corner_columns,
-};
+use poecal_results::residuals::{ResidualRow, Residuals as Rows, RowDiagnostics, columns as names, corner_columns};
 use pyo3::exceptions::PyModuleNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -93,14 +91,10 @@ impl Residuals {
 }
 
 /// A data frame of columns, by a package that may not be installed.
-fn make_frame<'py>(
-    py: Python<'py>,
-    package: &str,
-    columns: &Bound<'py, PyDict>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let found = py.import(package).map_err(|error| {
-        if error.is_instance_of::<PyModuleNotFoundError>(py) { no_package(package) } else { error }
-    })?;
+fn make_frame<'py>(py: Python<'py>, package: &str, columns: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyAny>> {
+    let found = py
+        .import(package)
+        .map_err(|error| if error.is_instance_of::<PyModuleNotFoundError>(py) { no_package(package) } else { error })?;
     found.call_method1("DataFrame", (columns,))
 }
 
@@ -288,9 +282,7 @@ impl Residuals {
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let model = self.model_of(model)?;
-        self.numbers(py, |row| {
-            row.corners.map(|corners| model.select_error(corners.models_px, corners.corrected_px))
-        })
+        self.numbers(py, |row| row.corners.map(|corners| model.select_error(corners.models_px, corners.corrected_px)))
     }
 
     /// Weight of each row in the fit, shape (m,); for a held-out row the weight that it would have had.
@@ -334,8 +326,7 @@ impl Residuals {
         columns.set_item("target", self.targets()?)?;
         for quantity in rows.quantities() {
             for (at, name) in names(quantity, rows.has_corrected).enumerate() {
-                columns
-                    .set_item(name, self.numbers(py, |row| row.errors.get(quantity)?.numbers().nth(at))?)?;
+                columns.set_item(name, self.numbers(py, |row| row.errors.get(quantity)?.numbers().nth(at))?)?;
             }
         }
         if rows.has_corners {
@@ -348,8 +339,7 @@ impl Residuals {
         columns.set_item("studentized", self.studentized(py)?)?;
         columns.set_item("suspected", self.suspected(py)?)?;
         for (at, (name, kind)) in rows.readings.iter().enumerate() {
-            let values =
-                (0..rows.rows().len()).map(|row| rows.values(row).get(at).copied().unwrap_or(f64::NAN));
+            let values = (0..rows.rows().len()).map(|row| rows.values(row).get(at).copied().unwrap_or(f64::NAN));
             let unit = kind.symbol();
             columns.set_item(format!("{name}[{unit}]"), PyArray1::from_vec(py, values.collect()))?;
         }

@@ -61,9 +61,7 @@ impl Calibration {
         let inputs: Vec<&Path> = std::iter::once(model.path.as_path()).chain(measured).collect();
         let place = reserved_folder(py, &folder, Contents::Calibration, existing, &inputs)?;
         let elsewhere = match &report {
-            ReportDestination::File(path) => {
-                warn_messages(py, |say| place.reserve_report(path, &inputs, say))?
-            }
+            ReportDestination::File(path) => warn_messages(py, |say| place.reserve_report(path, &inputs, say))?,
             ReportDestination::Among(_) => None,
         };
         let written = py.detach(|| {
@@ -74,8 +72,7 @@ impl Calibration {
                     Some(report::calibration_page_with(file, residuals, &shapes)?)
                 }
             };
-            let results =
-                Results { file: file.clone(), residuals: ResidualRows::AtHand(residuals), report: page };
+            let results = Results { file: file.clone(), residuals: ResidualRows::AtHand(residuals), report: page };
             output::write(place, elsewhere, model, &robot, results)
         });
         let written = written.map_err(raise)?;

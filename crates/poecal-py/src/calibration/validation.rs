@@ -40,8 +40,7 @@ impl ValidateOutputs {
             None => (true, None),
         };
         let existing = ExistingFiles::from_switch(force);
-        let results =
-            warn_messages(py, |say| ValidationOutputs::reserve(out, report, existing, &inputs, &mut *say))?;
+        let results = warn_messages(py, |say| ValidationOutputs::reserve(out, report, existing, &inputs, &mut *say))?;
         let history = history.map(|path| History::read(&path)).transpose().map_err(raise)?;
         Ok(ValidateOutputs { results, history })
     }

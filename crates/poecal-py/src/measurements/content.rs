@@ -130,12 +130,7 @@ impl Measurements {
             }
             source.train_where |= part.source.train_where;
         }
-        let file = MeasurementFile {
-            data: rows::join_datasets(&data)?,
-            notes,
-            warnings,
-            ..MeasurementFile::default()
-        };
+        let file = MeasurementFile { data: rows::join_datasets(&data)?, notes, warnings, ..MeasurementFile::default() };
         Ok(Measurements::new(file, source))
     }
 

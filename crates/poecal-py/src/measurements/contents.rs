@@ -14,14 +14,12 @@ pub(super) fn with_contents<'py, T>(
     contents: &Bound<'py, PyDict>,
     work: impl FnOnce(Vec<String>) -> PyResult<T>,
 ) -> PyResult<T> {
-    let expected =
-        "expected a dict of names of files to their contents, str or bytes, like {\"points.csv\": text}";
+    let expected = "expected a dict of names of files to their contents, str or bytes, like {\"points.csv\": text}";
     let mut files = Vec::with_capacity(contents.len());
     let mut names: Vec<String> = Vec::with_capacity(contents.len());
     for (name, content) in contents {
-        let name: String = name
-            .extract()
-            .map_err(|_| argument("contents", format!("found a name that is no text, {expected}")))?;
+        let name: String =
+            name.extract().map_err(|_| argument("contents", format!("found a name that is no text, {expected}")))?;
         let bytes = if let Ok(text) = content.cast::<PyString>() {
             text.to_string().into_bytes()
         } else if let Ok(bytes) = content.cast::<PyBytes>() {

@@ -41,8 +41,8 @@ pub(crate) struct ArrayColumns<'a, 'py> {
 
 /// The rows.
 pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult<Dataset> {
-    let length = NamedUnit::parse(columns.length_unit, Unit::Metre)
-        .map_err(|error| argument_error("length_unit", error))?;
+    let length =
+        NamedUnit::parse(columns.length_unit, Unit::Metre).map_err(|error| argument_error("length_unit", error))?;
     let readings = readings(robot, columns, length)?;
     let names = robot.reading_names();
     let m = readings.len() / names.len().max(1);
@@ -57,10 +57,7 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
         ("ids", columns.ids.as_ref().map(Vec::len)),
     ] {
         if let Some(found) = found.filter(|found| *found != m) {
-            return Err(argument(
-                name,
-                format!("found {found} entries, expected {m}, one for each row of joints"),
-            ));
+            return Err(argument(name, format!("found {found} entries, expected {m}, one for each row of joints")));
         }
     }
     let sets = sets(columns)?;
@@ -102,8 +99,8 @@ fn argument_error(argument: &str, error: Error) -> PyErr {
 
 /// Readings of all rows in SI.
 fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: NamedUnit) -> PyResult<Vec<f64>> {
-    let angle = NamedUnit::parse(columns.angle_unit, Unit::Radian)
-        .map_err(|error| argument_error("angle_unit", error))?;
+    let angle =
+        NamedUnit::parse(columns.angle_unit, Unit::Radian).map_err(|error| argument_error("angle_unit", error))?;
     let names = robot.reading_names();
     let n = names.len();
     let expected = format!("shape (m, {n}): in each row {}", names.join(", "));
@@ -181,11 +178,7 @@ fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
 }
 
 /// Measurements in SI.
-fn make_measurements(
-    columns: &ArrayColumns<'_, '_>,
-    m: usize,
-    length: NamedUnit,
-) -> PyResult<Vec<Measurement>> {
+fn make_measurements(columns: &ArrayColumns<'_, '_>, m: usize, length: NamedUnit) -> PyResult<Vec<Measurement>> {
     match (columns.positions, columns.poses) {
         (Some(positions), None) => points(positions, columns.quaternions_xyzw, m, length),
         (None, Some(poses)) if columns.quaternions_xyzw.is_none() => frames(poses, m, length),
@@ -193,12 +186,8 @@ fn make_measurements(
             "quaternions_xyzw",
             "found both poses and quaternions_xyzw, expected quaternions beside positions only",
         )),
-        (Some(_), Some(_)) => {
-            Err(argument("poses", "found both positions and poses, expected one of the two"))
-        }
-        (None, None) => {
-            Err(argument("positions", "found neither positions nor poses, expected one of the two"))
-        }
+        (Some(_), Some(_)) => Err(argument("poses", "found both positions and poses, expected one of the two")),
+        (None, None) => Err(argument("positions", "found neither positions nor poses, expected one of the two")),
     }
 }
 
@@ -227,28 +216,22 @@ fn points(
     let name = "quaternions_xyzw";
     let quaternions = quaternions
         .map(|value| {
-            NumberArray::from_argument(value, name, &expected)?.require_shape(
-                &[Some(m), Some(4)],
-                name,
-                &expected,
-            )
+            NumberArray::from_argument(value, name, &expected)?.require_shape(&[Some(m), Some(4)], name, &expected)
         })
         .transpose()?;
     let rows = positions.values.chunks_exact(3).enumerate();
     rows.map(|(row, numbers)| {
         let position = Vector3::from_iterator(numbers.iter().map(|&value| length.to_si(value)));
         check_size("positions", row, position.as_slice())?;
-        let quaternion = quaternions
-            .as_ref()
-            .and_then(|it| <[f64; 4]>::try_from(it.values.get(4 * row..4 * row + 4)?).ok());
+        let quaternion =
+            quaternions.as_ref().and_then(|it| <[f64; 4]>::try_from(it.values.get(4 * row..4 * row + 4)?).ok());
         let Some(quaternion) = quaternion.filter(|parts| !parts.iter().all(|part| part.is_nan())) else {
             return Ok(Measurement::point(position));
         };
         let norm = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
         if norm.is_nan() || (norm - 1.0).abs() > QUATERNION_TOLERANCE {
-            let message = format!(
-                "row {row}: found a quaternion of norm {norm:.4}, expected 1 to within {QUATERNION_TOLERANCE}"
-            );
+            let message =
+                format!("row {row}: found a quaternion of norm {norm:.4}, expected 1 to within {QUATERNION_TOLERANCE}");
             return Err(argument(name, message));
         }
         let pose = Pose::from_position_quaternion(position.into(), quaternion);
@@ -264,12 +247,7 @@ fn sets(columns: &ArrayColumns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
 }
 
 /// Standard deviation of each row, if stated.
-fn sigma(
-    name: &str,
-    value: Option<&Bound<'_, PyAny>>,
-    m: usize,
-    to_si: fn(f64) -> f64,
-) -> PyResult<Vec<Option<f64>>> {
+fn sigma(name: &str, value: Option<&Bound<'_, PyAny>>, m: usize, to_si: fn(f64) -> f64) -> PyResult<Vec<Option<f64>>> {
     let Some(value) = value else { return Ok(Vec::new()) };
     let expected = format!("a number, or shape ({m},): one for each row of joints");
     let mut numbers = match value.is_instance_of::<PyString>() {
@@ -283,9 +261,7 @@ fn sigma(
     let of_row = |(row, &value): (usize, &f64)| match value {
         value if value.is_nan() => Ok(None),
         value if value > 0.0 && value.is_finite() => Ok(Some(to_si(value))),
-        value => {
-            Err(argument(name, format!("row {row}: found {value}, expected a standard deviation above 0")))
-        }
+        value => Err(argument(name, format!("row {row}: found {value}, expected a standard deviation above 0"))),
     };
     numbers.values.iter().enumerate().map(of_row).collect()
 }

@@ -20,32 +20,26 @@ pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
         let no_column = || {
             argument(
                 "frame",
-                format!(
-                    "found {} as column `{title}`, expected a value for each row",
-                    describe_value(&column)
-                ),
+                format!("found {} as column `{title}`, expected a value for each row", describe_value(&column)),
             )
         };
         if column.is_instance_of::<PyString>() {
             return Err(no_column());
         }
         let cells = column.try_iter().map_err(|_| no_column())?.enumerate();
-        let cells =
-            cells.map(|(row, value)| cell(&value?, row, &title)).collect::<PyResult<Vec<String>>>()?;
+        let cells = cells.map(|(row, value)| cell(&value?, row, &title)).collect::<PyResult<Vec<String>>>()?;
         columns.push(cells);
     }
     let rows = columns.first().map_or(0, Vec::len);
     if let Some((name, column)) = names.iter().zip(&columns).find(|(_, column)| column.len() != rows) {
-        let message =
-            format!("found {} values in column `{name}`, expected {rows} as in the first", column.len());
+        let message = format!("found {} values in column `{name}`, expected {rows} as in the first", column.len());
         return Err(argument("frame", message));
     }
     let header: Vec<String> =
         names.iter().map(|name| Ok(quote_cell(&name.str()?.to_cow()?))).collect::<PyResult<_>>()?;
     let mut text = header.join(",") + "\n";
     for row in 0..rows {
-        let cells: Vec<&str> =
-            columns.iter().filter_map(|column| column.get(row)).map(String::as_str).collect();
+        let cells: Vec<&str> = columns.iter().filter_map(|column| column.get(row)).map(String::as_str).collect();
         text.push_str(&cells.join(","));
         text.push('\n');
     }
@@ -108,11 +102,7 @@ fn quote_cell(text: &str) -> String {
     // The reader removes an apostrophe before a text that a spreadsheet would run; one in the frame is protected by another.
     let mark = if text.starts_with('\'') { "'" } else { "" };
     let text = format!("{mark}{}", text.replace(['\n', '\r'], " "));
-    if text.contains([',', '"', ';', '\t', ' ', '#']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text
-    }
+    if text.contains([',', '"', ';', '\t', ' ', '#']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }
 
 /// The exception for an error in the table, with the row of the frame.

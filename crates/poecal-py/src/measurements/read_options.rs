@@ -27,11 +27,7 @@ pub(super) fn options(
         strict,
         socket_distances: socket_distance.map(str::parse).transpose()?,
         contact,
-        instrument_noise: instrument_noise
-            .into_iter()
-            .flatten()
-            .map(|it| it.parse())
-            .collect::<Result<_, _>>()?,
+        instrument_noise: instrument_noise.into_iter().flatten().map(|it| it.parse()).collect::<Result<_, _>>()?,
         ..ReadOptions::default()
     };
     if let Some(units) = units {

@@ -349,8 +349,7 @@ impl Measurements {
         file.data.files.clear();
         file.data.observations.iter_mut().for_each(|row| row.source = Default::default());
         let names = vec![from_dataframe::NAME.to_owned()];
-        let source =
-            MeasurementSource { names, train_where: train_where.is_some(), ..MeasurementSource::default() };
+        let source = MeasurementSource { names, train_where: train_where.is_some(), ..MeasurementSource::default() };
         Ok(Measurements::new(file, source))
     }
 

@@ -42,8 +42,7 @@ impl PriorBeliefs<'_> {
         };
         let tolerance = match self.tolerance_deg_mm {
             PriorTolerance::Auto => {
-                let message =
-                    "found `auto`, which measurements decide, expected two numbers, like (0.5, 5), or None";
+                let message = "found `auto`, which measurements decide, expected two numbers, like (0.5, 5), or None";
                 return Err(argument("tolerance_deg_mm", message));
             }
             PriorTolerance::None | PriorTolerance::Given(_) | PriorTolerance::Of(_) => {
@@ -96,10 +95,9 @@ pub(crate) fn workspace(
     seed: u64,
 ) -> PyResult<Option<Vec<f64>>> {
     match (workspace, workspace_box_mm) {
-        (Some(_), Some(_)) => Err(argument(
-            "workspace_box_mm",
-            "found both workspace and workspace_box_mm, expected one of the two",
-        )),
+        (Some(_), Some(_)) => {
+            Err(argument("workspace_box_mm", "found both workspace and workspace_box_mm, expected one of the two"))
+        }
         (over, None) => configurations(over, robot),
         (None, Some(corners_mm)) => {
             let corners = corners(corners_mm, "workspace_box_mm")?;

@@ -176,13 +176,7 @@ impl Plan {
         planned_table(&self.model.robot, &self.found).map_err(raise)
     }
 
-    fn put(
-        &self,
-        py: Python<'_>,
-        path: &Path,
-        force: bool,
-        page: poecal_results::output::PagePieces,
-    ) -> PyResult<()> {
+    fn put(&self, py: Python<'_>, path: &Path, force: bool, page: poecal_results::output::PagePieces) -> PyResult<()> {
         let place = reserved_file(py, path, ExistingFiles::from_switch(force), &[&self.model.path])?;
         py.detach(|| place.write(page)).map_err(raise)
     }

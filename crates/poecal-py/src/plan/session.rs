@@ -183,8 +183,7 @@ impl PlanSession<'_, '_> {
         let kept = kept_rows(rows.keep_rows, robot)?;
         let replaced = rows.replace_rows.unwrap_or_default();
         if let Some(row) = replaced.iter().find(|&&row| row >= kept.len()) {
-            let expected =
-                format!("found {row}, expected a row of keep_rows, from 0 to below {}", kept.len());
+            let expected = format!("found {row}, expected a row of keep_rows, from 0 to below {}", kept.len());
             return Err(argument("replace_rows", expected));
         }
         let options = PlanOptions {
@@ -221,12 +220,7 @@ fn refuse_numbers(count: usize, judge: usize, targets: usize) -> PyResult<()> {
 }
 
 /// Conditions on a configuration.
-fn conditions(
-    py: Python<'_>,
-    model: &Model,
-    room: &RobotEnvironment<'_, '_>,
-    view: &PlanView,
-) -> PyResult<Conditions> {
+fn conditions(py: Python<'_>, model: &Model, room: &RobotEnvironment<'_, '_>, view: &PlanView) -> PyResult<Conditions> {
     let sight = [
         ("device_half_angle_deg", view.device_half_angle_deg.is_some()),
         ("device_aim_mm", view.device_aim_mm.is_some()),

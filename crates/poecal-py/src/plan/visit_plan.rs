@@ -60,9 +60,7 @@ impl VisitOptions<'_> {
             ("target", self.target.is_some()),
         ];
         match stated.into_iter().find(|it| it.1) {
-            Some((name, _)) => {
-                Err(argument(name, "found it without purpose=\"drift\", expected both or neither"))
-            }
+            Some((name, _)) => Err(argument(name, "found it without purpose=\"drift\", expected both or neither")),
             None => Ok(()),
         }
     }
@@ -75,11 +73,9 @@ impl VisitOptions<'_> {
         count: Option<usize>,
         candidates: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Findings> {
-        let expected =
-            "a poecal.Calibration, as of poecal.calibrate or Calibration.read, with purpose=\"drift\"";
-        let calibration = calibration
-            .cast::<Calibration>()
-            .map_err(|_| unexpected_error("robot", calibration, expected))?;
+        let expected = "a poecal.Calibration, as of poecal.calibrate or Calibration.read, with purpose=\"drift\"";
+        let calibration =
+            calibration.cast::<Calibration>().map_err(|_| unexpected_error("robot", calibration, expected))?;
         let calibration = calibration.get();
         let count = count.unwrap_or(USUAL);
         if !(1..=MOST).contains(&count) {
@@ -91,10 +87,7 @@ impl VisitOptions<'_> {
         let options = TrackOptions {
             device_is_known: known.transpose()?.unwrap_or(file.frame() == DeviceFrameKnowledge::Base),
             tool_is_anew: anew.transpose()?.unwrap_or(false),
-            repeatability_m: self
-                .repeatability_mm
-                .map(|it| sigma("repeatability_mm", it, from_mm))
-                .transpose()?,
+            repeatability_m: self.repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
         };
         let new = candidates.map(|it| JointArray::from_argument(it, robot)).transpose()?;
         let readings = new.as_ref().map(|it| it.readings.as_slice());

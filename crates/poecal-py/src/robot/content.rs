@@ -79,9 +79,7 @@ impl Robot {
                 targets: document.selection().targets,
             },
             ModelSource::Toml => SourceState::Toml,
-            ModelSource::Calibration(file) => {
-                SourceState::Calibration { text: file.to_text().map_err(raise)? }
-            }
+            ModelSource::Calibration(file) => SourceState::Calibration { text: file.to_text().map_err(raise)? },
         };
         Ok(RobotState {
             robot: self.robot().clone(),
@@ -105,11 +103,7 @@ impl Robot {
                 ModelSource::Calibration(Box::new(CalibrationFile::parse(&text, &path).map_err(raise)?))
             }
         };
-        Ok(Robot {
-            model: Arc::new(Model { robot, source, path }),
-            sha256: Arc::new(sha256),
-            inverse: Arc::default(),
-        })
+        Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256), inverse: Arc::default() })
     }
 }
 

@@ -220,7 +220,6 @@ impl Robot {
         #[pyo3(from_py_with = arg::tip_link)] tip_link: &str,
     ) -> PyResult<Self> {
         let naming = NamingArguments { name, names, limits, base_link, tip_link };
-        from_dh(&DhArguments { a_m, alpha_rad, d_m, theta_rad, convention, kinds, base, tool }, &naming)
-            .map(Robot::new)
+        from_dh(&DhArguments { a_m, alpha_rad, d_m, theta_rad, convention, kinds, base, tool }, &naming).map(Robot::new)
     }
 }

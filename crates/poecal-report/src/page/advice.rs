@@ -54,8 +54,7 @@ fn option_at(text: &str) -> Option<usize> {
     text.match_indices("--").map(|(at, _)| at).find(|&at| {
         let before = text[..at].chars().next_back();
         let after = text[at + 2..].chars().next();
-        before.is_none_or(|c| !c.is_alphanumeric() && c != '-')
-            && after.is_some_and(|c| c.is_ascii_lowercase())
+        before.is_none_or(|c| !c.is_alphanumeric() && c != '-') && after.is_some_and(|c| c.is_ascii_lowercase())
     })
 }
 

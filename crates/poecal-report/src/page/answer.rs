@@ -9,8 +9,8 @@ use super::html::{figure, list, quote_text};
 use super::joints;
 use super::leading_error::spaced_unit;
 use crate::summary::{
-    LeadingRows, ModelRow, PointSource, ReviewPoint, SEE_ROBUST, expected_summary, judged_on, look_at,
-    reasons, why_larger,
+    LeadingRows, ModelRow, PointSource, ReviewPoint, SEE_ROBUST, expected_summary, judged_on, look_at, reasons,
+    why_larger,
 };
 use crate::table::joints_words;
 use poecal_calibrate::{Decision, Event, Level};
@@ -72,8 +72,7 @@ fn colour(file: &CalibrationFile) -> (&'static str, String) {
 fn before_after(file: &CalibrationFile) -> Markup {
     let leading = LeadingRows::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return Markup::default() };
-    let has_length =
-        set.calibrated.leading_value().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
+    let has_length = set.calibrated.leading_value().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
     let measured = |(_, model, key): &ModelRow<'_>| {
         if let Some(pixels) = model.of_pictures(set.count) {
             return html! { (figure(pixels.rms_mm, format_args!("{key}.pixels.rms_mm"))) " mm" };
@@ -174,12 +173,8 @@ fn repair_sentences(file: &CalibrationFile) -> Vec<Markup> {
 fn point_words(file: &CalibrationFile, point: &ReviewPoint) -> Option<Markup> {
     match point.place {
         PointSource::Reason => Some(reason(file, &point.text)),
-        PointSource::Suspicion(k) => {
-            Some(sentence_markup(&point.text, format_args!("suspicions.{k}.statement")))
-        }
-        PointSource::Diagnosis(k) => {
-            Some(sentence_markup(&point.text, format_args!("diagnosis.{k}.statement")))
-        }
+        PointSource::Suspicion(k) => Some(sentence_markup(&point.text, format_args!("suspicions.{k}.statement"))),
+        PointSource::Diagnosis(k) => Some(sentence_markup(&point.text, format_args!("diagnosis.{k}.statement"))),
         PointSource::Warning(k) => Some(sentence_markup(&point.text, format_args!("warnings.{k}"))),
         PointSource::Suspects => Some(html! { a href="#suspects" { (point.text.replace(SEE_ROBUST, "")) } }),
         PointSource::Joint(k) => {

@@ -43,9 +43,7 @@ pub(crate) fn limits_table(found: &Acceptance) -> Markup {
     let columns: Vec<(String, [Markup; 6])> = found.limits.iter().enumerate().map(column).collect();
     let heads: Vec<&str> = std::iter::once("").chain(columns.iter().map(|(name, _)| name.as_str())).collect();
     let mut table = HtmlTable::new("Errors and their limits", 1, &heads);
-    for (at, label) in
-        ["decision", "limit", "found", "lower bound", "upper bound", "rows"].into_iter().enumerate()
-    {
+    for (at, label) in ["decision", "limit", "found", "lower bound", "upper bound", "rows"].into_iter().enumerate() {
         let cells = columns.iter().map(|(_, cells)| cells[at].clone());
         table.cells(std::iter::once(html! { (label) }).chain(cells));
     }
@@ -71,9 +69,7 @@ pub(crate) fn decision_title(decision: Decision, count: usize) -> &'static str {
         (Decision::Pass, _) => "PASS: every limit is kept",
         (Decision::Fail, 1) => "FAIL: the limit is exceeded",
         (Decision::Fail, _) => "FAIL: a limit is exceeded",
-        (Decision::NotShown, _) => {
-            "NOT SHOWN: the rows show neither that the limits are kept nor that they are not"
-        }
+        (Decision::NotShown, _) => "NOT SHOWN: the rows show neither that the limits are kept nor that they are not",
     }
 }
 
@@ -84,8 +80,7 @@ fn column((k, limit): (usize, &AcceptedLimit)) -> (String, [Markup; 6]) {
     let most = html! { span data-key=(key("limit")) { (format_limit(limit.limit)) } (unit) };
     let found = html! { b { (figure(limit.found, key("found"))) (unit) } };
     let from = html! { (figure(limit.from, key("from"))) (unit) };
-    let to =
-        html! { @if let Some(to) = limit.to { (figure(to, key("to"))) (unit) } @else { "too few rows" } };
+    let to = html! { @if let Some(to) = limit.to { (figure(to, key("to"))) (unit) } @else { "too few rows" } };
     let rows = if limit.rows == limit.configurations {
         count(limit.rows, key("rows"))
     } else {
@@ -114,10 +109,7 @@ pub(crate) fn hands(
     all.extend(acceptance.map(|title| ("Acceptance", html! { (title) })));
     all.push(("Made by", html! { "poecal " (version) }));
     if !files.is_empty() {
-        all.push((
-            "SHA-256 of",
-            html! { @for (k, file) in files.iter().enumerate() { @if k > 0 { br; } (file) } },
-        ));
+        all.push(("SHA-256 of", html! { @for (k, file) in files.iter().enumerate() { @if k > 0 { br; } (file) } }));
     }
     let hand = |role: &str, name: &str| {
         html! {

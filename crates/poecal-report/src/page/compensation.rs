@@ -3,9 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::advice::told_words;
-use super::html::{
-    HtmlTable, capital, count, decimal, figure, figure_or, fold_table, plots, quote_text, section,
-};
+use super::html::{HtmlTable, capital, count, decimal, figure, figure_or, fold_table, plots, quote_text, section};
 use crate::plot::{HeatCell, HeatMap};
 use crate::summary::uncertainty;
 use crate::table::number;
@@ -92,11 +90,8 @@ fn map(found: &CompensationEntry) -> Markup {
 /// Expected errors of corrected programs; `None` for a file that does not state them.
 fn expected_map(found: &CompensationEntry) -> Option<Markup> {
     let value = |it: &WorkspaceCellEntry| it.sigma_position_mm;
-    let worst = found
-        .cells
-        .iter()
-        .filter_map(|it| Some((it, value(it)?)))
-        .max_by(|one, other| one.1.total_cmp(&other.1));
+    let worst =
+        found.cells.iter().filter_map(|it| Some((it, value(it)?))).max_by(|one, other| one.1.total_cmp(&other.1));
     let (place, sigma) = worst?;
     let description = format!(
         "A map over distance from {} and height along it: the expected error of predicted positions in each cell. The largest, {} mm, is at {}. \
@@ -105,12 +100,7 @@ fn expected_map(found: &CompensationEntry) -> Option<Markup> {
         number(sigma),
         place_words(found, place)
     );
-    Some(heat_map(
-        found,
-        sigma < SMALL,
-        value,
-        ("Expected error of a corrected program", description, "(RMS)"),
-    ))
+    Some(heat_map(found, sigma < SMALL, value, ("Expected error of a corrected program", description, "(RMS)")))
 }
 
 fn axis_words(found: &CompensationEntry) -> &'static str {
@@ -155,8 +145,7 @@ fn describe_cell(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     } else {
         format!("{} configurations", own.configurations)
     };
-    let expected =
-        it.sigma_position_mm.map(|sigma| format!(", corrected {} mm (RMS) expected", number(sigma)));
+    let expected = it.sigma_position_mm.map(|sigma| format!(", corrected {} mm (RMS) expected", number(sigma)));
     format!(
         "{}: median {} mm, at most {} mm and {}°{} ({configurations})",
         place_words(found, it),

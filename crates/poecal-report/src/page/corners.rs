@@ -33,8 +33,7 @@ pub(crate) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
     let mut has_any = false;
     for (name, model, key) in rows {
         let Some(pixels) = model.pixels else { continue };
-        let cells =
-            COLUMNS.map(|(_, word, value)| figure(value(&pixels), format_args!("{key}.pixels.{word}")));
+        let cells = COLUMNS.map(|(_, word, value)| figure(value(&pixels), format_args!("{key}.pixels.{word}")));
         table.cells(std::iter::once(name.render()).chain(cells));
         has_any = true;
     }

@@ -72,10 +72,8 @@ fn mean_of_terms(found: &JointErrorsEntry) -> f64 {
 /// Each joint's error over its range.
 fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
     let plot = |it: &JointErrorsEntry| {
-        let slides =
-            file.joints.iter().any(|joint| joint.name == it.joint && joint.kind == JointKind::Prismatic);
-        let (factor, unit, of) =
-            if slides { (1e3, "mm", "mm") } else { (1f64.to_degrees(), "degrees", "mrad") };
+        let slides = file.joints.iter().any(|joint| joint.name == it.joint && joint.kind == JointKind::Prismatic);
+        let (factor, unit, of) = if slides { (1e3, "mm", "mm") } else { (1f64.to_degrees(), "degrees", "mrad") };
         let points = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
             let at = |k: usize| factor * 0.5 * (it.parts[k].from + it.parts[k].to);
             (0..it.parts.len()).map(|k| [at(k), value(k)]).collect()
@@ -94,8 +92,9 @@ fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
         ];
         let plot = LinePlot {
             title: it.joint.clone(),
-            description: "The joint's error over its range by the calibrated and by the corrected model, and by its own terms."
-                .to_owned(),
+            description:
+                "The joint's error over its range by the calibrated and by the corrected model, and by its own terms."
+                    .to_owned(),
             x: PlotAxis::new(&format!("{} of the joint", unit), AxisScale::Linear),
             y: PlotAxis::new(&format!("error, {of}"), AxisScale::Linear).with_values(&[0.0]),
             lines,
@@ -111,8 +110,7 @@ pub(crate) fn tried_sizes_table(file: &CalibrationFile) -> Markup {
     let Some(found) = file.corrected.as_deref().filter(|it| !it.tried.is_empty()) else {
         return Markup::default();
     };
-    let is_tried =
-        |name: &&str| found.tried.iter().any(|it| it.sizes.get(*name).is_some_and(|size| *size > 0.0));
+    let is_tried = |name: &&str| found.tried.iter().any(|it| it.sizes.get(*name).is_some_and(|size| *size > 0.0));
     let groups: Vec<TermGroup> = TermGroup::ALL.into_iter().filter(|group| is_tried(&group.name())).collect();
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let heads: Vec<String> =
@@ -128,8 +126,7 @@ pub(crate) fn tried_sizes_table(file: &CalibrationFile) -> Markup {
     order.sort_by(|&a, &b| found.tried[a].score.total_cmp(&found.tried[b].score));
     for k in order.into_iter().take(TRIED) {
         let it = &found.tried[k];
-        let size =
-            |name: &&str| it.sizes.get(*name).map_or_else(|| "–".to_owned(), |size| decimal(1e3 * size, 2));
+        let size = |name: &&str| it.sizes.get(*name).map_or_else(|| "–".to_owned(), |size| decimal(1e3 * size, 2));
         let first = figure(it.left_out, format_args!("corrected.tried.{k}.left_out"));
         let cells = names.iter().map(size).map(|text| html! { (text) });
         table.cells(std::iter::once(first).chain(cells));

@@ -111,11 +111,7 @@ impl EncodedColumn {
         let low = finite().fold(f64::INFINITY, |a, b| a.min(*b));
         let high = finite().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
         let step = (high - low) / f64::from(NONE - 1);
-        if step > 0.0 {
-            EncodedColumn::new(&values, low, step)
-        } else {
-            EncodedColumn::new(&values, low, 1.0)
-        }
+        if step > 0.0 { EncodedColumn::new(&values, low, step) } else { EncodedColumn::new(&values, low, 1.0) }
     }
 
     fn of_counts(values: impl Iterator<Item = usize>) -> Self {
@@ -127,8 +123,7 @@ impl EncodedColumn {
             let value = value.filter(|it| it.is_finite());
             value.map_or(NONE, |it| (((it - low) / step).round() as u32).min(NONE - 1))
         };
-        let bytes: Vec<u8> =
-            values.iter().flat_map(|it| number(it).to_be_bytes().into_iter().skip(1)).collect();
+        let bytes: Vec<u8> = values.iter().flat_map(|it| number(it).to_be_bytes().into_iter().skip(1)).collect();
         EncodedColumn { low: if low.is_finite() { low } else { 0.0 }, step, bytes: base64(&bytes) }
     }
 }
@@ -239,8 +234,7 @@ fn thin_rows(residuals: &Residuals, rows: &[usize], most: usize) -> Vec<(usize, 
     let suspected = |row: usize| residuals.rows().get(row)?.judged.map(|judged| judged.suspected);
     let lead = LeadingError::from_residuals(residuals);
     let error = |row: usize| residuals.rows().get(row).and_then(|row| lead.error(row)).unwrap_or_default();
-    let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
-        rows.iter().partition(|&&row| suspected(row) == Some(true));
+    let (mut worst, mut others): (Vec<usize>, Vec<usize>) = rows.iter().partition(|&&row| suspected(row) == Some(true));
     let shares = [most / SUSPECTED, most / WORST];
     for (rows, most) in [(&mut worst, shares[0]), (&mut others, shares[1])] {
         keep_first(rows, most, |&a, &b| error(b).total_cmp(&error(a)).then(a.cmp(&b)));
@@ -299,11 +293,8 @@ impl DrawnRows {
             char::from(b'0' + digit)
         };
         // Rows that came from no file are those of a nameless one.
-        let files: Vec<String> = residuals
-            .files
-            .iter()
-            .map(|file| escape_invisible(&before_line(residuals, file)).into_owned())
-            .collect();
+        let files: Vec<String> =
+            residuals.files.iter().map(|file| escape_invisible(&before_line(residuals, file)).into_owned()).collect();
         let is_part = drawn.len() < residuals.rows().len();
         let line = |(index, row): &(usize, &ResidualRow)| {
             if residuals.file(row).is_empty() { index + 1 } else { row.line as usize }
@@ -326,8 +317,7 @@ impl DrawnRows {
 /// Factor and shift of a joint's value by its terms, as a straight line through the values at 0 and 1.
 fn fit_straight(terms: &BTreeMap<Term, f64>) -> Option<[f64; 2]> {
     let at = |value: f64| -> f64 {
-        value
-            + terms.iter().map(|(term, c)| c * Situation::from_values(&[value]).basis(0, *term)).sum::<f64>()
+        value + terms.iter().map(|(term, c)| c * Situation::from_values(&[value]).basis(0, *term)).sum::<f64>()
     };
     (!terms.is_empty()).then(|| [at(1.0) - at(0.0), at(0.0)])
 }

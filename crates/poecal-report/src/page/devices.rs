@@ -136,8 +136,7 @@ pub(crate) fn station_details(file: &CalibrationFile, index: usize, pose: &Pose)
         Device::Plane => parts.push(html! { "normal " (direction) }),
         Device::Direction => parts.push(html! { "along " (direction) }),
         Device::Sphere => {
-            let radius =
-                |it| html! { "radius " (figure(it, format_args!("stations.{index}.radius_mm"))) " mm" };
+            let radius = |it| html! { "radius " (figure(it, format_args!("stations.{index}.radius_mm"))) " mm" };
             parts.extend(station.radius_mm.map(radius));
         }
         Device::Instrument | Device::Anchor | Device::Socket | Device::Pair => {

@@ -31,9 +31,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
     let (all, of, key) = match held_out {
         Some(set) => (set, "rows held out", "accuracy.held_out.count"),
-        None => {
-            (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count")
-        }
+        None => (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count"),
     };
     let LeadingRows { set, models: rows, without, beside } = LeadingRows::from_calibration(file);
     let on = match held_out {
@@ -49,7 +47,8 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         std::iter::once(all).chain(beside)
     });
     let tables: Vec<HtmlTable> = corners::table(&rows, &on).into_iter().chain(tables).collect();
-    let caption = html! { (count(all.count, key)) " " (of) ". Registered: your model, with only tool and device located." };
+    let caption =
+        html! { (count(all.count, key)) " " (of) ". Registered: your model, with only tool and device located." };
     let content = html! {
         div.first {
             div {
@@ -78,12 +77,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 /// Errors before and after, of the rows held out or else of those fitted; for the former also their ratio.
-fn lead_table(
-    caption: &str,
-    rows: &[ModelRow<'_>],
-    quantity: Quantity,
-    gain: Option<&Improvements>,
-) -> HtmlTable {
+fn lead_table(caption: &str, rows: &[ModelRow<'_>], quantity: Quantity, gain: Option<&Improvements>) -> HtmlTable {
     let heads: Vec<&str> = std::iter::once("").chain(rows.iter().map(|(name, ..)| name.as_str())).collect();
     let mut table = HtmlTable::new(caption, 1, &heads);
     for (label, statistic, value) in STATISTICS {
@@ -158,15 +152,11 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
         @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
         " held out"
     };
-    let mut all =
-        vec![("Model", path(&file.inputs.model, "inputs.model")), ("Measurements", files), ("Rows", rows)];
+    let mut all = vec![("Model", path(&file.inputs.model, "inputs.model")), ("Measurements", files), ("Rows", rows)];
     all.extend(corners::fact(file).map(|corners| ("Corners", corners)));
     let found = found_words(file);
     if !found.is_empty() {
-        all.push((
-            "Found",
-            html! { @for (k, words) in found.iter().enumerate() { @if k > 0 { br; } (words) } },
-        ));
+        all.push(("Found", html! { @for (k, words) in found.iter().enumerate() { @if k > 0 { br; } (words) } }));
     }
     all.push(("Noise", noise(file)));
     all

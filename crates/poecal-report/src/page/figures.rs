@@ -58,24 +58,17 @@ pub(crate) fn sets(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         let most = points.iter().find(|[_, share]| *share >= 95.0).zip(points.last());
         most.is_some_and(|([usual, _], [largest, _])| *largest > FAR_OFF * usual)
     });
-    let (scale, words, from) = if is_far_off {
-        (AxisScale::Log, " (logarithmic)", None)
-    } else {
-        (AxisScale::Linear, "", Some(0.0))
-    };
-    let lines = sets.map(|(name, style, errors)| PlotLine {
-        name: name.to_owned(),
-        style,
-        points: distribution(errors),
-    });
+    let (scale, words, from) =
+        if is_far_off { (AxisScale::Log, " (logarithmic)", None) } else { (AxisScale::Linear, "", Some(0.0)) };
+    let lines =
+        sets.map(|(name, style, errors)| PlotLine { name: name.to_owned(), style, points: distribution(errors) });
     let name = lead.name();
     let plot = LinePlot {
         title: format!("{} model: fitted against held-out rows", capital(delivered_name(file))),
         description: format!(
             "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
         ),
-        x: PlotAxis::new(&format!("{name} error, {}{words}", lead.unit()), scale)
-            .with_values(from.as_slice()),
+        x: PlotAxis::new(&format!("{name} error, {}{words}", lead.unit()), scale).with_values(from.as_slice()),
         y: PlotAxis::new("share of the rows below, %", AxisScale::Linear).with_values(&[0.0, 100.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,
@@ -106,7 +99,9 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
     let plot = |title: &str, axis: &str, rows: Vec<RangeRow>| {
         let plot = RangePlot {
             title: title.to_owned(),
-            description: "A dot for each joint, one standard deviation to each side as a line; the table has the figures.".to_owned(),
+            description:
+                "A dot for each joint, one standard deviation to each side as a line; the table has the figures."
+                    .to_owned(),
             x: PlotAxis::new(axis, AxisScale::Linear).with_values(&[0.0]),
             rows,
         };
@@ -115,12 +110,9 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
     let length = |it: &[f64; 3]| it.iter().map(|part| part * part).sum::<f64>().sqrt();
     let changes = || file.corrections.iter().filter_map(|it| Some((&*it.joint, it.change.as_ref()?)));
     let tilts = changes().map(|(joint, it)| row(joint, length(&it.tilt_deg), it.sigma_tilt_deg));
-    let shifts = changes()
-        .filter_map(|(joint, it)| Some(row(joint, length(it.shift_mm.as_ref()?), it.sigma_shift_mm)));
-    let plots = [
-        plot("Tilt of each axis", "degrees", tilts.collect()),
-        plot("Shift of each axis", "mm", shifts.collect()),
-    ];
+    let shifts = changes().filter_map(|(joint, it)| Some(row(joint, length(it.shift_mm.as_ref()?), it.sigma_shift_mm)));
+    let plots =
+        [plot("Tilt of each axis", "degrees", tilts.collect()), plot("Shift of each axis", "mm", shifts.collect())];
     plots.into_iter().flatten().collect()
 }
 
@@ -131,9 +123,10 @@ pub(crate) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
         (JointKind::Prismatic, "Joints that slide", "mm", 1e3),
     ];
     let plots = kinds.into_iter().filter_map(|(kind, title, unit, factor)| {
-        let joints = file.coverage.iter().filter(|found| {
-            file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == kind)
-        });
+        let joints = file
+            .coverage
+            .iter()
+            .filter(|found| file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == kind));
         let rows: Vec<RangeRow> = joints
             .map(|found| RangeRow {
                 label: found.joint.clone(),
@@ -144,7 +137,9 @@ pub(crate) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
             .collect();
         let plot = RangePlot {
             title: title.to_owned(),
-            description: "For each joint its limits as a thin line and what was sampled as a bar; the table has the figures.".to_owned(),
+            description:
+                "For each joint its limits as a thin line and what was sampled as a bar; the table has the figures."
+                    .to_owned(),
             x: PlotAxis::new(unit, AxisScale::Linear),
             rows,
         };

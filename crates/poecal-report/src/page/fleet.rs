@@ -49,17 +49,11 @@ pub fn fleet_page(line: &FleetLine) -> PagePieces {
 
 fn failed_table(line: &FleetLine) -> Markup {
     let all: Vec<_> = line.rows.iter().filter(|row| !row.is_passed()).collect();
-    let mut table =
-        HtmlTable::new("Robots that did not pass, and why", 4, &["serial", "date", "verdict", "because"]);
+    let mut table = HtmlTable::new("Robots that did not pass, and why", 4, &["serial", "date", "verdict", "because"]);
     for row in all.iter().take(LISTED) {
         let because = row.reason.as_deref().unwrap_or_default();
         let because = html! { @for (k, piece) in because.split('`').enumerate() { @if k % 2 == 1 { code { (piece) } } @else { (piece) } } };
-        table.row(&[
-            &row.serial,
-            &unbroken_text(&row.date),
-            &verdict(row.verdict.as_deref()),
-            &sentence(&because),
-        ]);
+        table.row(&[&row.serial, &unbroken_text(&row.date), &verdict(row.verdict.as_deref()), &sentence(&because)]);
     }
     let more = (all.len() > LISTED).then(|| all.len() - LISTED);
     let content = html! { (table) @if let Some(more) = more { p { "… and " (more) " more in fleet.csv" } } };
@@ -158,14 +152,12 @@ fn interval(of: Option<Interval>) -> String {
 
 /// Figures of the robots in the order of measurement: errors, noise, offsets, and common effects of joints.
 fn pictures(line: &FleetLine) -> Markup {
-    let is_drawn =
-        |it: &&FigureSeries| (it.joint.is_none() || it.name.ends_with(".offset")) && it.values.len() > 1;
+    let is_drawn = |it: &&FigureSeries| (it.joint.is_none() || it.name.ends_with(".offset")) && it.values.len() > 1;
     let all: Vec<Markup> = line.series.iter().filter(is_drawn).map(picture).collect();
     if all.is_empty() {
         return Markup::default();
     }
-    let caption =
-        "Each robot's figure in the order measured, and the moving average by which steps are found.";
+    let caption = "Each robot's figure in the order measured, and the moving average by which steps are found.";
     section("figures", "Figures over the robots", &plots(&all, caption))
 }
 
@@ -197,8 +189,7 @@ fn robots_table(line: &FleetLine) -> Markup {
     let mut table = HtmlTable::new("All robots", 4, &names);
     for row in &line.rows {
         let figure = |value: Option<f64>| value.map_or_else(String::new, |it| decimal(it, 4));
-        let report =
-            html! { @if row.verdict.is_some() { a href={ (row.results) "/report.html" } { "report" } } };
+        let report = html! { @if row.verdict.is_some() { a href={ (row.results) "/report.html" } { "report" } } };
         table.row(&[
             &row.serial,
             &unbroken_text(&row.date),

@@ -57,9 +57,8 @@ impl<'a> FrameData<'a> {
     fn seen_as(self, file: &CalibrationFile, name: &str) -> Self {
         let Some(pictures) = &file.pictures else { return self };
         let camera = pictures.cameras.iter().find(|it| it.name == name).map(corners_of);
-        let points = |board: &BoardEntry| {
-            board.points.iter().map(|it| it.place_mm.map(|mm| (1e3 * mm).round() / 1e6)).collect()
-        };
+        let points =
+            |board: &BoardEntry| board.points.iter().map(|it| it.place_mm.map(|mm| (1e3 * mm).round() / 1e6)).collect();
         let board = pictures.boards.iter().find(|it| it.name == name).map(points);
         FrameData { camera, board, ..self }
     }
@@ -95,11 +94,7 @@ pub(crate) struct PageFrames<'a> {
 }
 
 impl<'a> PageFrames<'a> {
-    pub(crate) fn from_calibration(
-        file: &'a CalibrationFile,
-        robot: &Robot,
-        residuals: &'a Residuals,
-    ) -> Result<Self> {
+    pub(crate) fn from_calibration(file: &'a CalibrationFile, robot: &Robot, residuals: &'a Residuals) -> Result<Self> {
         let nominal = file.nominal_robot()?;
         let places = robot.places_of_targets();
         let target = |name: &'a String| {
@@ -107,8 +102,7 @@ impl<'a> PageFrames<'a> {
             let nominal = mount(&nominal, &nominal.mounted, name).map(|it| it.1);
             FrameData::new(name, body, &pose, nominal.as_ref()).seen_as(file, name)
         };
-        let unseen =
-            file.targets.iter().filter(|(name, it)| it.on.is_some() && !residuals.targets.contains(name));
+        let unseen = file.targets.iter().filter(|(name, it)| it.on.is_some() && !residuals.targets.contains(name));
         let targets = residuals.targets.iter().chain(unseen.map(|(name, _)| name)).map(target).collect();
 
         let first = file.stations.first().and_then(|it| it.instrument.as_deref()).unwrap_or_default();
@@ -126,8 +120,7 @@ impl<'a> PageFrames<'a> {
                 let frame = FrameData::new(shown, body, &pose, Some(&nominal));
                 return Ok(frame.of_station(station).seen_as(file, name));
             }
-            let pose =
-                station.map_or(&file.measurement_frame.base_from_device, |it| &it.base_from_device).pose()?;
+            let pose = station.map_or(&file.measurement_frame.base_from_device, |it| &it.base_from_device).pose()?;
             let frame = FrameData::new(shown, Body::Base, &pose, Some(&pose));
             Ok(frame.of_station(station).seen_as(file, name))
         };

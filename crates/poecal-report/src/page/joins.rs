@@ -44,13 +44,13 @@ fn section(join: &JoinEntry, at: usize) -> Markup {
     };
     let mut all = vec![("Joined", files), ("Pairs", pairs)];
     if let Some(missed) = join.missed_mm {
-        all.push((
-            "Nominal robot",
-            html! { "misses them by " (figure(missed, key("missed_mm"))) " mm (median)" },
-        ));
+        all.push(("Nominal robot", html! { "misses them by " (figure(missed, key("missed_mm"))) " mm (median)" }));
     }
     if let Some(lag) = join.lag_s {
-        all.push(("Lag", html! { (figure(lag, key("lag_s"))) " s: the clock of the measurements less that of the joint readings" }));
+        all.push((
+            "Lag",
+            html! { (figure(lag, key("lag_s"))) " s: the clock of the measurements less that of the joint readings" },
+        ));
     }
     for (name, rows) in [
         ("Nothing measured at", &join.unmeasured),
@@ -223,9 +223,8 @@ fn link(join: &JoinEntry, lists: &[JoinedList; 2]) -> Vec<[f64; 2]> {
 /// Speeds in the middle of their steps.
 fn speed(motion: &MotionEntry, later: f64, name: &str, style: usize) -> PlotLine {
     let points = (0..).zip(&motion.speeds_mm_s);
-    let point = |(at, speed): (u32, &Option<f64>)| {
-        [(f64::from(at) + 0.5) * motion.step_s + later, speed.unwrap_or(f64::NAN)]
-    };
+    let point =
+        |(at, speed): (u32, &Option<f64>)| [(f64::from(at) + 0.5) * motion.step_s + later, speed.unwrap_or(f64::NAN)];
     PlotLine { name: name.to_owned(), style, points: points.map(point).collect() }
 }
 

@@ -46,11 +46,7 @@ pub(crate) fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
 }
 
 /// A joint's axis in one of the models.
-fn axis(
-    table: &mut HtmlTable,
-    (k, joint): (usize, &JointEntry),
-    (model, screw, key): (&str, &ScrewEntry, &str),
-) {
+fn axis(table: &mut HtmlTable, (k, joint): (usize, &JointEntry), (model, screw, key): (&str, &ScrewEntry, &str)) {
     let turns = joint.kind == JointKind::Revolute;
     let (direction, part) = if turns { (screw.w, "w") } else { (screw.v_m, "v_m") };
     let [x, y, z] = [0, 1, 2].map(|i| figure(direction[i], format_args!("joints.{k}.{key}.{part}.{i}")));

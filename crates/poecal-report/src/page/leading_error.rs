@@ -15,10 +15,7 @@ impl LeadingError {
     pub(crate) fn from_residuals(residuals: &Residuals) -> Self {
         let unit = residuals.leading_quantity().map_or(Unit::Metre, Quantity::unit);
         let leads = |it: &Quantity| {
-            residuals
-                .kinds()
-                .iter()
-                .any(|(kind, _)| leading_value(kind, unit).is_some_and(|(own, ())| own == *it))
+            residuals.kinds().iter().any(|(kind, _)| leading_value(kind, unit).is_some_and(|(own, ())| own == *it))
         };
         let quantities = residuals.measured_quantities().into_iter().filter(leads).collect();
         LeadingError { quantities, unit }

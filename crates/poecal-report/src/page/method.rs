@@ -113,13 +113,11 @@ fn method_words(method: &str) -> &str {
 
 fn convergence(file: &CalibrationFile) -> Markup {
     let trace = &file.solver.trace;
-    let mut table =
-        HtmlTable::new("Mean square of the whitened residual by iteration", 1, &["iteration", "value"]);
+    let mut table = HtmlTable::new("Mean square of the whitened residual by iteration", 1, &["iteration", "value"]);
     for (k, value) in trace.iter().enumerate().take(LISTED) {
         table.row(&[&k, &figure(*value, format_args!("solver.trace.{k}"))]);
     }
-    let words =
-        if trace.len() > LISTED { "The first iterations as numbers" } else { "The iterations as numbers" };
+    let words = if trace.len() > LISTED { "The first iterations as numbers" } else { "The iterations as numbers" };
     html! {
         (plots(&[figures::convergence(file)], "Each line is a fit with weights and rows of its own, so that values of different lines do not compare. At 1 the residuals are as large as the noise that they are weighted by."))
         (fold_table(words, &table))
@@ -142,11 +140,8 @@ pub(crate) fn files(
     (entries, mappings): (&[InputEntry], &[&String]),
 ) -> HtmlTable {
     let has_entries = !entries.is_empty();
-    let head: &[&str] = if has_entries {
-        &["file", "what", "taken", "rows", "SHA-256"]
-    } else {
-        &["file", "what", "SHA-256"]
-    };
+    let head: &[&str] =
+        if has_entries { &["file", "what", "taken", "rows", "SHA-256"] } else { &["file", "what", "SHA-256"] };
     let mut table = HtmlTable::new("Files that were read", head.len(), head);
     let mut add = |name: &String, shown: Markup, what: &str, of: Option<(&InputEntry, usize)>| {
         let hash = sha256.get(name).map_or("not recorded", String::as_str);
@@ -165,8 +160,7 @@ pub(crate) fn files(
     }
     for (k, name) in measurements.iter().enumerate() {
         let shown = || path(name, format_args!("inputs.measurements.{k}"));
-        let own: Vec<(&InputEntry, usize)> =
-            entries.iter().zip(0..).filter(|(entry, _)| entry.file == *name).collect();
+        let own: Vec<(&InputEntry, usize)> = entries.iter().zip(0..).filter(|(entry, _)| entry.file == *name).collect();
         for (entry, at) in &own {
             add(name, shown(), entry.form.as_deref().unwrap_or("a table"), Some((entry, *at)));
         }

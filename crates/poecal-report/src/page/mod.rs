@@ -93,11 +93,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
 ///
 /// # Errors
 /// As [`calibration_page`].
-pub fn calibration_page_with(
-    file: &CalibrationFile,
-    residuals: &Residuals,
-    shapes: &Shapes,
-) -> Result<PagePieces> {
+pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<PagePieces> {
     check(file, residuals)?;
     let drawn = data::drawn_rows(residuals);
     let data = data::json(file, residuals, shapes, &drawn)?;
@@ -169,8 +165,7 @@ fn head(title: &str, record: &Record, version: &str) -> Markup {
 /// Refuses residuals of another calibration.
 fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
     let refused = |words: String| {
-        ErrorKind::Problem
-            .refuse(format!("found residuals {words}: name the residuals.csv that was written with it"))
+        ErrorKind::Problem.refuse(format!("found residuals {words}: name the residuals.csv that was written with it"))
     };
     let held_out = residuals.rows().iter().filter(|row| row.held_out).count();
     let found = (residuals.rows().len() - held_out, held_out);

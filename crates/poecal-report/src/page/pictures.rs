@@ -93,8 +93,7 @@ fn after(image: &ImageMap) -> Markup {
 fn map_before(image: &ImageMap) -> Markup {
     let words = (
         "Where corners were off before".to_owned(),
-        "A map over the image: root mean square distance of the corners of each cell by the nominal axes."
-            .to_owned(),
+        "A map over the image: root mean square distance of the corners of each cell by the nominal axes.".to_owned(),
         "px (RMS)",
     );
     map(image, words, |it| it.before_px, |_| None)
@@ -103,7 +102,8 @@ fn map_before(image: &ImageMap) -> Markup {
 fn map_predicted(image: &ImageMap) -> Markup {
     let words = (
         "How well pixels are predicted".to_owned(),
-        "A map over the image: root mean square distance by which a point is predicted off, by the covariance.".to_owned(),
+        "A map over the image: root mean square distance by which a point is predicted off, by the covariance."
+            .to_owned(),
         "px (RMS)",
     );
     map(image, words, |it| it.predicted_px, |_| None)
@@ -154,9 +154,8 @@ fn by_picture(file: &CalibrationFile, residuals: &Residuals) -> Option<Markup> {
         rows.retain(|(.., after)| *after > limit);
     }
     let which = if all > rows.len() { format!(", the {} worst of {all}", rows.len()) } else { String::new() };
-    let values = |of: fn(&(String, f64, f64)) -> f64| {
-        rows.iter().map(|it| Some(of(it)).filter(|it| it.is_finite())).collect()
-    };
+    let values =
+        |of: fn(&(String, f64, f64)) -> f64| rows.iter().map(|it| Some(of(it)).filter(|it| it.is_finite())).collect();
     let plot = DotPlot {
         title: format!("Corners by picture{which}"),
         description: "For each picture the root mean square distance of its corners from where the model sees them, before and after.".to_owned(),

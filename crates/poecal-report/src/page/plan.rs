@@ -51,8 +51,7 @@ pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Pla
 
 fn arms(robot: &Robot, options: &PlanOptions, found: &Found) -> Markup {
     let rows = found.rows.iter().filter(|row| !row.returns);
-    let skeletons: Vec<(RowPurpose, Skeleton)> =
-        rows.map(|row| (row.part, skeleton(robot, &row.readings))).collect();
+    let skeletons: Vec<(RowPurpose, Skeleton)> = rows.map(|row| (row.part, skeleton(robot, &row.readings))).collect();
     let chosen = spread_out_rows(&skeletons);
     let caption = format!(
         "Dots: the target in all {} configurations. Lines: the robot in {} of them that are far apart, between the frames of its joints. Only \
@@ -72,9 +71,7 @@ fn spread_out_rows(skeletons: &[(RowPurpose, Skeleton)]) -> Vec<usize> {
         skeletons.iter().enumerate().filter_map(|(k, (_, lines))| Some((k, lines.last()?[1]))).collect();
     let mut chosen: Vec<(usize, Vector3<f64>)> = ends.first().copied().into_iter().collect();
     while chosen.len() < ARMS.min(ends.len()) {
-        let far = |at: &Vector3<f64>| {
-            chosen.iter().map(|(_, other)| (at - other).norm()).fold(f64::INFINITY, f64::min)
-        };
+        let far = |at: &Vector3<f64>| chosen.iter().map(|(_, other)| (at - other).norm()).fold(f64::INFINITY, f64::min);
         let next = ends.iter().max_by(|a, b| far(&a.1).total_cmp(&far(&b.1))).copied();
         // If all others coincide with those before, no further one is distant.
         match next.filter(|(_, at)| far(at) > 0.0) {
@@ -169,11 +166,8 @@ fn curve(found: &Found, told: &PlanReport) -> Markup {
         ],
         mark: Some(AxisMark { at: told.planned_count() as f64, label: "planned".to_owned() }),
     };
-    let mut table = HtmlTable::new(
-        "Expected errors, mm; removable: the part that more rows would remove",
-        0,
-        &CURVE_HEAD,
-    );
+    let mut table =
+        HtmlTable::new("Expected errors, mm; removable: the part that more rows would remove", 0, &CURVE_HEAD);
     for point in &found.curve {
         let it = &point.expected;
         let errors = [it.calibrated_m(), it.undetermined_m, it.corrected_m(), it.corrected_undetermined_m];
@@ -205,9 +199,7 @@ fn joints(robot: &Robot, found: &Found) -> Markup {
                 *count += 1;
             }
         }
-        let end = |value: f64| {
-            format!("{} {}", decimal(kind.in_shown_unit(value), 0), kind.suffix()).trim().to_owned()
-        };
+        let end = |value: f64| format!("{} {}", decimal(kind.in_shown_unit(value), 0), kind.suffix()).trim().to_owned();
         StripRow { name: name.clone(), ends: [end(low), end(high)], counts }
     };
     let plot = StripPlot {
@@ -231,8 +223,7 @@ fn rows(robot: &Robot, found: &Found) -> Markup {
             (false, RowPurpose::Fit) => "fit",
             (false, RowPurpose::Judge) => "judge",
         };
-        let cells =
-            row.readings.iter().zip(&kinds).map(|(value, kind)| decimal(kind.in_shown_unit(*value), 2));
+        let cells = row.readings.iter().zip(&kinds).map(|(value, kind)| decimal(kind.in_shown_unit(*value), 2));
         table.cells([(at + 1).to_string(), part.to_owned()].into_iter().chain(cells));
     }
     html! { (table) }

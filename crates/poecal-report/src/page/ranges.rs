@@ -18,9 +18,8 @@ const ALIKE: f64 = 0.7;
 
 /// Expected errors over the joint ranges: a map, or a sentence if they hardly differ.
 pub(crate) fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
-    let order = |a: &(usize, &RangeEntry), b: &(usize, &RangeEntry)| {
-        a.1.sigma_position_mm.total_cmp(&b.1.sigma_position_mm)
-    };
+    let order =
+        |a: &(usize, &RangeEntry), b: &(usize, &RangeEntry)| a.1.sigma_position_mm.total_cmp(&b.1.sigma_position_mm);
     let all = || found.parts.iter().enumerate();
     let figure = |(k, part): (usize, &RangeEntry)| {
         figure(part.sigma_position_mm, format_args!("{key}.parts.{k}.sigma_position_mm"))

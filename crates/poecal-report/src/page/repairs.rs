@@ -19,7 +19,8 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     );
     for (k, found) in file.repairs.iter().enumerate() {
         let key = |name: &str| format!("repairs.{k}.{name}");
-        let what = html! { (words(found.kind)) @if !found.name.is_empty() { " " (quote_text(&found.name, key("name"))) } };
+        let what =
+            html! { (words(found.kind)) @if !found.name.is_empty() { " " (quote_text(&found.name, key("name"))) } };
         let cells = [
             what,
             quote_text(&found.from, key("from")),
@@ -31,8 +32,7 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
         ];
         table.cells(cells);
     }
-    let pictures: Vec<Markup> =
-        file.repairs.iter().filter(|it| !it.residuals.is_empty()).map(picture).collect();
+    let pictures: Vec<Markup> = file.repairs.iter().filter(|it| !it.residuals.is_empty()).map(picture).collect();
     let content = html! {
         p {
             "Something evidently happened during the session. What follows is the calibration of the repaired one, which predicts rows better that are \
@@ -64,9 +64,8 @@ fn picture(found: &Event) -> Markup {
     let is_step = !matches!(found.kind, EventKind::Drift | EventKind::Rows);
     let plot = LinePlot {
         title: format!("{}: errors before and after", words(found.kind)),
-        description:
-            "The error of each row by the models before and after the repair; the table has the figures."
-                .to_owned(),
+        description: "The error of each row by the models before and after the repair; the table has the figures."
+            .to_owned(),
         x: PlotAxis::new("row", AxisScale::Count),
         y: PlotAxis::new("error, mm (logarithmic)", AxisScale::Log),
         lines: vec![line("before", 1, 1), line("after", 0, 2)],

@@ -131,8 +131,7 @@ fn component_note(residuals: &Residuals) -> String {
 /// Errors of all sets, with and without suspected rows.
 fn set_tables(file: &CalibrationFile) -> Markup {
     let (accuracy, robust) = (&file.accuracy, &file.robust);
-    let without =
-        [&robust.without_suspected.training, &robust.without_suspected.held_out].map(Option::as_ref);
+    let without = [&robust.without_suspected.training, &robust.without_suspected.held_out].map(Option::as_ref);
     let sets = [
         ("fitted rows", "accuracy.training", Some(&accuracy.training)),
         ("held-out rows", "accuracy.held_out", accuracy.held_out.as_ref()),
@@ -152,24 +151,18 @@ fn set_tables(file: &CalibrationFile) -> Markup {
 
 /// Mean and spread of each component.
 fn component_table(residuals: &Residuals) -> HtmlTable {
-    let mut table = HtmlTable::new(
-        "Residuals by component",
-        2,
-        &["component", "rows", "number", "mean", "RMS", "largest"],
-    );
+    let mut table =
+        HtmlTable::new("Residuals by component", 2, &["component", "rows", "number", "mean", "RMS", "largest"]);
     let measured = residuals.measured_quantities().into_iter();
-    let components: Vec<(Quantity, usize)> = measured
-        .flat_map(|quantity| (0..quantity.components()).map(move |component| (quantity, component)))
-        .collect();
+    let components: Vec<(Quantity, usize)> =
+        measured.flat_map(|quantity| (0..quantity.components()).map(move |component| (quantity, component))).collect();
     let rows = threads::map_parts_of(residuals.rows().len(), 2 * components.len(), |index| {
         let (quantity, component) = *components.get(index / 2)?;
         let (set, held_out) = [("fitted", false), ("held out", true)][index % 2];
-        let of = |row: &ResidualRow| {
-            row.errors.get(quantity)?.residual().get(component).copied().filter(|it| !it.is_nan())
-        };
+        let of =
+            |row: &ResidualRow| row.errors.get(quantity)?.residual().get(component).copied().filter(|it| !it.is_nan());
         let name = format!("{}, {}", component_words(quantity, component), sign(quantity.unit()));
-        let values: Vec<f64> =
-            residuals.rows().iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
+        let values: Vec<f64> = residuals.rows().iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let found = Statistic::from_errors(values.iter().map(|value| value.abs()).collect())?;
         let sign = if mean < 0.0 { "−" } else { "" };
@@ -195,8 +188,7 @@ fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
         let (index, name, unit) = &readings[reading];
         let value = |row: usize| residuals.values(row).get(*index).copied();
         let values = || (0..residuals.rows().len()).filter_map(value);
-        let (least, most) =
-            values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let (least, most) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         let width = (most - least) / PARTS as f64;
         if width.is_nan() || width <= 0.0 {
             return Vec::new();
@@ -238,11 +230,8 @@ fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
     };
     keep_first(&mut judged, LEVERAGES, larger);
     judged.sort_unstable_by(larger);
-    let mut table = HtmlTable::new(
-        "Fitted rows of largest leverage",
-        1,
-        &["row", "leverage", "studentised residual", "weight"],
-    );
+    let mut table =
+        HtmlTable::new("Fitted rows of largest leverage", 1, &["row", "leverage", "studentised residual", "weight"]);
     for (k, found) in &judged {
         let numbers = [found.leverage, found.studentized, found.weight].map(number);
         table.row(&[&place(residuals, *k), &numbers[0], &numbers[1], &numbers[2]]);
@@ -288,8 +277,7 @@ fn off_alike(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         return Markup::default();
     }
     let head = ["first row", "rows", "targets", "off by from, mm", "to, mm"];
-    let mut table =
-        HtmlTable::new("Configurations in which all targets are off alike, the worst first", 1, &head);
+    let mut table = HtmlTable::new("Configurations in which all targets are off alike, the worst first", 1, &head);
     for (k, it) in found.iter().enumerate().take(LISTED) {
         let key = |name: &str| format!("suspected_configurations.{k}.{name}");
         table.cells([
@@ -312,17 +300,12 @@ fn off_alike(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
-    let is_measured =
-        |quantity: &Quantity| file.outliers.iter().any(|it| it.residual.get(*quantity).is_some());
+    let is_measured = |quantity: &Quantity| file.outliers.iter().any(|it| it.residual.get(*quantity).is_some());
     let measured: Vec<Quantity> = Quantity::ALL.into_iter().filter(is_measured).collect();
-    let off_by: Vec<String> = measured
-        .iter()
-        .map(|quantity| format!("{} off by, {}", quantity.name(), sign(quantity.unit())))
-        .collect();
+    let off_by: Vec<String> =
+        measured.iter().map(|quantity| format!("{} off by, {}", quantity.name(), sign(quantity.unit()))).collect();
     let words = |words: [&'static str; 2]| words.into_iter();
-    let head = words(["row", "set"])
-        .chain(off_by.iter().map(String::as_str))
-        .chain(words(["studentised", "weight"]));
+    let head = words(["row", "set"]).chain(off_by.iter().map(String::as_str)).chain(words(["studentised", "weight"]));
     let head: Vec<&str> = head.collect();
     let mut table = HtmlTable::new("Suspected outliers, the worst first", 2, &head);
     for (k, found) in file.outliers.iter().take(LISTED).enumerate() {
@@ -343,8 +326,7 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
 
 fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let Some(found) = &file.repeatability else { return Markup::default() };
-    let tables =
-        found.mean.repeatability.iter().map(|(quantity, _)| repeatability_table(found, residuals, quantity));
+    let tables = found.mean.repeatability.iter().map(|(quantity, _)| repeatability_table(found, residuals, quantity));
     let tables: Vec<HtmlTable> = tables.collect();
     let worst = found.worst_repeatability.iter().map(|(quantity, worst)| {
         html! { (figure(worst, format_args!("repeatability.worst_repeatability.{}", quantity.key()))) (spaced_unit(quantity.unit())) (further_words(quantity)) }

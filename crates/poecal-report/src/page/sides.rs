@@ -32,18 +32,10 @@ pub(crate) fn pictures(arms: impl Fn(&SideView) -> Vec<ArmSeries>) -> Vec<Markup
 }
 
 /// Both pictures of something, in a unit of length.
-pub(crate) fn views(
-    name: &str,
-    what: &str,
-    unit: &str,
-    arms: impl Fn(&SideView) -> Vec<ArmSeries>,
-) -> Vec<Markup> {
+pub(crate) fn views(name: &str, what: &str, unit: &str, arms: impl Fn(&SideView) -> Vec<ArmSeries>) -> Vec<Markup> {
     let one = |view: &SideView| {
-        let title = if name.is_empty() {
-            view.title.to_owned()
-        } else {
-            format!("{name}, {}", view.title.to_lowercase())
-        };
+        let title =
+            if name.is_empty() { view.title.to_owned() } else { format!("{name}, {}", view.title.to_lowercase()) };
         let plot = ArmPlot {
             description: format!("{title}: {what}"),
             title,
@@ -64,18 +56,11 @@ pub(crate) fn draw_robot(file: &CalibrationFile) -> Vec<Markup> {
         let sampled = file.coverage.iter().find(|it| it.joint == joint.name)?;
         Some(0.5 * (sampled.sampled_min + sampled.sampled_max))
     };
-    let readings: Vec<f64> =
-        robot.reading_names().iter().map(|name| middle(name).unwrap_or_default()).collect();
+    let readings: Vec<f64> = robot.reading_names().iter().map(|name| middle(name).unwrap_or_default()).collect();
     let lines = skeleton(&robot, &readings);
     pictures(|view| {
         let ends = lines.iter().map(|line| view.project(&line[1])).collect();
         let lines = lines.iter().map(|[a, b]| [view.project(a), view.project(b)]).collect();
-        vec![ArmSeries {
-            name: "calibrated".to_owned(),
-            style: 0,
-            lines,
-            points: ends,
-            ..ArmSeries::default()
-        }]
+        vec![ArmSeries { name: "calibrated".to_owned(), style: 0, lines, points: ends, ..ArmSeries::default() }]
     })
 }

@@ -3,9 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{
-    HtmlTable, count, figure, figure_or, fold_table, list, plots, quote_text, scaled_figure, section,
-};
+use super::html::{HtmlTable, count, figure, figure_or, fold_table, list, plots, quote_text, scaled_figure, section};
 use super::leading_error::{sign, spaced_unit};
 use super::ranges::{self, unit_of};
 use crate::shade;
@@ -106,11 +104,9 @@ fn blocks(found: &CrossValidationEntry) -> Markup {
     let worst = blocks.max_by(|(_, a), (_, b)| a.rms.lead().total_cmp(&b.rms.lead()));
     let measured: Vec<(Quantity, String)> =
         found.random.rms.iter().map(|(quantity, _)| (quantity, format!("rms.{}", quantity.key()))).collect();
-    let rms =
-        |(quantity, _): &(Quantity, String)| format!("{}, {} (RMS)", quantity.name(), sign(quantity.unit()));
+    let rms = |(quantity, _): &(Quantity, String)| format!("{}, {} (RMS)", quantity.name(), sign(quantity.unit()));
     let errors: Vec<String> = measured.iter().map(rms).collect();
-    let head: Vec<&str> =
-        ["rows predicted", "rows"].into_iter().chain(errors.iter().map(String::as_str)).collect();
+    let head: Vec<&str> = ["rows predicted", "rows"].into_iter().chain(errors.iter().map(String::as_str)).collect();
     let mut table = HtmlTable::new("Fitted rows, predicted by calibrated models of the others", 1, &head);
     let mut add = |entry: &LeftOutEntry, key: &str| {
         let mut cells = vec![
@@ -313,13 +309,7 @@ fn correlations(file: &CalibrationFile) -> Markup {
 fn observability(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability.observability;
     let indices = [
-        (
-            "O1",
-            "geometric mean of the singular values, over the root of the number of rows",
-            "1/m",
-            found.o1,
-            "o1",
-        ),
+        ("O1", "geometric mean of the singular values, over the root of the number of rows", "1/m", found.o1, "o1"),
         ("O2", "inverse of the condition number", "", found.o2, "o2"),
         ("O3", "smallest singular value", "1/m", found.o3, "o3"),
         ("O4", "noise amplification", "1/m", found.o4, "o4"),

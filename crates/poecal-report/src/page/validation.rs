@@ -68,8 +68,7 @@ fn verdict(found: &Validation) -> Markup {
     let class = found.verdict.level.map_or("unknown", Level::word);
     let words = capital(confirmed_words(found.verdict.level));
     let reasons = found.verdict.reasons.iter().enumerate();
-    let reasons: Vec<Markup> =
-        reasons.map(|(k, text)| quote_text(text, format_args!("verdict.reasons.{k}"))).collect();
+    let reasons: Vec<Markup> = reasons.map(|(k, text)| quote_text(text, format_args!("verdict.reasons.{k}"))).collect();
     let mut doubts = Vec::new();
     if let Some(moved) = found.judgement.moved_device.filter(|it| it.refitted) {
         doubts.push(html! {
@@ -111,9 +110,10 @@ fn one_figure(found: &Validation, quantity: Quantity, error: &VerdictError) -> M
 fn errors(found: &Validation) -> Markup {
     let own = &found.judgement;
     let models: Vec<_> = judged_models(own).into_iter().map(|(name, model)| (name, Some(model))).collect();
-    let tables = own.calibrated.iter().map(|(quantity, _)| {
-        models_table(&error_words(quantity, "on these measurements"), &models, "", quantity)
-    });
+    let tables = own
+        .calibrated
+        .iter()
+        .map(|(quantity, _)| models_table(&error_words(quantity, "on these measurements"), &models, "", quantity));
     html! { @for table in tables { (table) } }
 }
 
@@ -154,8 +154,7 @@ fn picture(rows: &JudgedRows<'_>) -> Markup {
     let all = (0..rows.rows.len()).step_by(step);
     let own: Vec<(f64, (f64, Option<f64>))> =
         all.filter_map(|k| Some((k as f64 + 1.0, row_of(rows, k, quantity)?))).collect();
-    let line =
-        |name: &str, style: usize, points: Vec<[f64; 2]>| PlotLine { name: name.to_owned(), style, points };
+    let line = |name: &str, style: usize, points: Vec<[f64; 2]>| PlotLine { name: name.to_owned(), style, points };
     let errors = own.iter().map(|(k, (error, _))| [*k, *error]).collect();
     let bounds = own.iter().filter_map(|(k, (_, bound))| Some([*k, (*bound)?])).collect();
     let lines = [line("error", 0, errors), line("95 % bound", 2, bounds)];
@@ -164,8 +163,7 @@ fn picture(rows: &JudgedRows<'_>) -> Markup {
         title: format!("The {} error by row", quantity.name()),
         description: "The error of each row and its bound; the table of errors has the figures.".to_owned(),
         x: PlotAxis::new("row", AxisScale::Count),
-        y: PlotAxis::new(&format!("{} error, {unit}", quantity.name()), AxisScale::Linear)
-            .with_values(&[0.0]),
+        y: PlotAxis::new(&format!("{} error, {unit}", quantity.name()), AxisScale::Linear).with_values(&[0.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,
     };
@@ -183,8 +181,7 @@ fn largest_errors(rows: &JudgedRows<'_>) -> Markup {
     let unit = sign(quantity.unit());
     let has_targets = rows.data.targets.len() > 1;
     let (error, bound) = (format!("error, {unit}"), format!("95 % bound, {unit}"));
-    let heads: &[&str] =
-        if has_targets { &["row", "target", &error, &bound] } else { &["row", &error, &bound] };
+    let heads: &[&str] = if has_targets { &["row", "target", &error, &bound] } else { &["row", &error, &bound] };
     let caption = format!("The {} rows of the largest errors", all.len());
     let mut table = HtmlTable::new(&caption, heads.len() - 2, heads);
     for (k, error, bound) in all {
@@ -210,20 +207,9 @@ fn checks(found: &Validation, earlier: &[HistoryEntry]) -> Markup {
         return Markup::default();
     }
     let unit = sign(quantity.unit());
-    let heads = [
-        "checked",
-        "verdict",
-        "model",
-        "rows",
-        &format!("error (RMS), {unit}"),
-        &format!("expected, {unit}"),
-    ];
+    let heads = ["checked", "verdict", "model", "rows", &format!("error (RMS), {unit}"), &format!("expected, {unit}")];
     let mut table = HtmlTable::new("The checks of this calibration", 3, &heads);
-    let mut row = |time: &str,
-                   level: Option<Level>,
-                   model: &str,
-                   count: usize,
-                   error: Option<VerdictError>| {
+    let mut row = |time: &str, level: Option<Level>, model: &str, count: usize, error: Option<VerdictError>| {
         let shown = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), crate::table::number);
         let words = level.map_or("no bounds to test", Level::words);
         let error = error.unwrap_or_default();
@@ -257,10 +243,8 @@ fn inputs(found: &Validation) -> Markup {
 }
 
 fn signature(found: &Validation) -> Markup {
-    let names: Vec<&String> =
-        std::iter::once(&found.inputs.calibration).chain(&found.inputs.measurements).collect();
-    let of =
-        html! { (found.robot) @if let Some(serial) = &found.record.serial { ", serial number " (serial) } };
+    let names: Vec<&String> = std::iter::once(&found.inputs.calibration).chain(&found.inputs.measurements).collect();
+    let of = html! { (found.robot) @if let Some(serial) = &found.record.serial { ", serial number " (serial) } };
     certificate::hands(
         ("Robot", of),
         &found.record,

@@ -80,8 +80,7 @@ impl ArmPlot {
                 canvas.marker(arm.style, point, 3.0, true);
             }
             canvas.end_series();
-            for (label, [x, y]) in arm.labels.iter().zip(arm.points.iter().filter_map(|point| place(*point)))
-            {
+            for (label, [x, y]) in arm.labels.iter().zip(arm.points.iter().filter_map(|point| place(*point))) {
                 canvas.text([x + 7.0, y - 6.0], Anchor::Start, label);
             }
         }

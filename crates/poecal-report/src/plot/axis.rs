@@ -106,11 +106,8 @@ impl Ruler {
         let positive = || values.iter().filter(|v| v.is_finite() && **v > 0.0);
         let largest = positive().fold(f64::NAN, |a, b| a.max(*b));
         let smallest = positive().fold(f64::NAN, |a, b| a.min(*b));
-        let (mut low, mut high) = if largest.is_nan() {
-            (0, 1)
-        } else {
-            (smallest.log10().floor() as i32, largest.log10().ceil() as i32)
-        };
+        let (mut low, mut high) =
+            if largest.is_nan() { (0, 1) } else { (smallest.log10().floor() as i32, largest.log10().ceil() as i32) };
         low = low.max(high - MOST_DECADES);
         if low == high {
             high += 1;

@@ -36,8 +36,7 @@ impl DotPlot {
         let values = || self.series.iter().flat_map(|dots| dots.values.iter().flatten());
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(values().copied().chain(marked));
-        let legend: Vec<(usize, &str)> =
-            self.series.iter().map(|dots| (dots.style, dots.name.as_str())).collect();
+        let legend: Vec<(usize, &str)> = self.series.iter().map(|dots| (dots.style, dots.name.as_str())).collect();
         let labels: Vec<&str> = self.rows.iter().map(String::as_str).collect();
         let (rows, x) = ((labels.as_slice(), self.row_height()), (x, self.x.title.as_str()));
         let mut frame = PlotFrame::of_rows(&self.title, &legend, rows, x, self.mark.as_ref());
@@ -117,15 +116,10 @@ mod tests {
     #[test]
     fn any_data_give_well_formed_pictures() {
         let odd = [0.0, -1.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
-        let sets = odd.iter().map(|v| vec![Some(*v)]).chain([
-            vec![],
-            vec![None],
-            odd.iter().copied().map(Some).collect(),
-        ]);
+        let sets =
+            odd.iter().map(|v| vec![Some(*v)]).chain([vec![], vec![None], odd.iter().copied().map(Some).collect()]);
         for values in sets {
-            for (scale, joined) in
-                [(AxisScale::Linear, false), (AxisScale::Log, true), (AxisScale::Log, false)]
-            {
+            for (scale, joined) in [(AxisScale::Linear, false), (AxisScale::Log, true), (AxisScale::Log, false)] {
                 let svg = plot(scale, joined, &values);
                 roxmltree::Document::parse(&svg).unwrap();
                 assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");

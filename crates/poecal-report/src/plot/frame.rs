@@ -66,12 +66,7 @@ pub(crate) struct PlotFrame {
 
 impl PlotFrame {
     /// A frame around an area, with its horizontal axis, and its mark, for which there is [`mark_room`].
-    pub(crate) fn new(
-        canvas: Canvas,
-        area: Area,
-        (x, title): (Ruler, &str),
-        mark: Option<&AxisMark>,
-    ) -> Self {
+    pub(crate) fn new(canvas: Canvas, area: Area, (x, title): (Ruler, &str), mark: Option<&AxisMark>) -> Self {
         let mut frame = PlotFrame { canvas, area, x, unshown: HiddenValues::default() };
         frame.horizontal_axis(title, mark);
         frame
@@ -137,11 +132,9 @@ impl PlotFrame {
         if !any {
             notes.push("There are no values.".to_owned());
         }
-        for (count, words) in [
-            (unshown.zero, "exactly zero"),
-            (unshown.infinite, "infinite"),
-            (unshown.other, "beyond the axis"),
-        ] {
+        for (count, words) in
+            [(unshown.zero, "exactly zero"), (unshown.infinite, "infinite"), (unshown.other, "beyond the axis")]
+        {
             if count > 0 {
                 notes.push(format!("Hollow: {words} ({count})."));
             }

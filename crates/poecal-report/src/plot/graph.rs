@@ -161,8 +161,7 @@ impl Graph {
     /// The chart as SVG, for a page whose style sheet has its classes.
     pub fn svg(&self) -> Markup {
         let [width, height] = self.size;
-        let view =
-            PlotArea { width: FINE * width, height: FINE * height, x: self.x.ruler(std::iter::empty()) };
+        let view = PlotArea { width: FINE * width, height: FINE * height, x: self.x.ruler(std::iter::empty()) };
         let rulers: Vec<Ruler> = self.sides.iter().map(|side| side.y.ruler(std::iter::empty())).collect();
         let spoken = self.sides.first().map_or("", |side| &side.spoken);
         let [low, high] = view.x.ends();
@@ -209,10 +208,8 @@ mod tests {
             let drawn = text.strip_suffix("h0");
             let numbers = drawn.unwrap_or(text);
             let cut = numbers.rfind(['-', ' ']).unwrap();
-            at = [
-                at[0] + numbers[..cut].parse::<i32>().unwrap(),
-                at[1] + numbers[cut..].trim().parse::<i32>().unwrap(),
-            ];
+            at =
+                [at[0] + numbers[..cut].parse::<i32>().unwrap(), at[1] + numbers[cut..].trim().parse::<i32>().unwrap()];
             drawn.map(|_| at)
         };
         path.split('m').skip(1).map(dot).collect()
@@ -231,14 +228,8 @@ mod tests {
 
     #[test]
     fn each_row_has_its_dot_or_the_lack_of_one() {
-        let points = vec![
-            Some([0.0, 0.0]),
-            None,
-            Some([10.0, 4.0]),
-            Some([5.0, f64::NAN]),
-            Some([5.0, 9.0]),
-            Some([5.0, 1.0]),
-        ];
+        let points =
+            vec![Some([0.0, 0.0]), None, Some([10.0, 4.0]), Some([5.0, f64::NAN]), Some([5.0, 9.0]), Some([5.0, 1.0])];
         let svg = graph(points, Vec::new());
         // 3 % of room at each end of 200 and 100 units.
         assert_eq!(dots(&svg), [Some([6, 97]), None, Some([194, 3]), None, None, Some([100, 74])]);

@@ -86,11 +86,7 @@ impl HeatMap {
             if let Some(arrow) = cell.arrow.filter(is_drawn) {
                 let down = if self.downwards { arrow[1] } else { -arrow[1] };
                 let reach = ARROW * side / longest;
-                draw_arrow(
-                    &mut canvas,
-                    [left + 0.5 * side, top + 0.4 * side],
-                    [reach * arrow[0], reach * down],
-                );
+                draw_arrow(&mut canvas, [left + 0.5 * side, top + 0.4 * side], [reach * arrow[0], reach * down]);
             }
         }
         self.axes(&mut canvas, &area, side, ends);

@@ -100,8 +100,7 @@ impl JoinPlot {
         for (style, odd) in styles {
             frame.canvas.begin_series(style);
             for entry in list.entries.iter().filter(|it| it.odd == odd) {
-                let (Some(from), Some(to)) =
-                    (frame.position_across(entry.from), frame.position_across(entry.to))
+                let (Some(from), Some(to)) = (frame.position_across(entry.from), frame.position_across(entry.to))
                 else {
                     continue;
                 };

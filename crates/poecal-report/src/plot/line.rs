@@ -60,15 +60,13 @@ impl LinePlot {
         let y = self.y.ruler(points().map(|point| point[1]).chain(ends));
         let mut canvas = Canvas::new();
         // Lines of one name are one in pieces. A single one needs no legend: the title says what it is.
-        let mut legend: Vec<(usize, &str)> =
-            self.lines.iter().map(|line| (line.style, line.name.as_str())).collect();
+        let mut legend: Vec<(usize, &str)> = self.lines.iter().map(|line| (line.style, line.name.as_str())).collect();
         legend.dedup();
         if legend.len() == 1 {
             legend.clear();
         }
         let below = frame::head(&mut canvas, &self.title, &legend, true);
-        let top =
-            frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());
+        let top = frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());
         let area = Area { left: 56.0, top, right: WIDTH - 20.0, bottom: top + HEIGHT };
         frame::vertical_axis(&mut canvas, &area, &y);
         let mut frame = PlotFrame::new(canvas, area, (x, &self.x.title), self.mark.as_ref());
@@ -85,9 +83,7 @@ impl LinePlot {
 /// Draws a band; values that are no numbers are left out.
 fn shade(frame: &mut PlotFrame, y: &Ruler, band: &Band) {
     let PlotFrame { canvas, area, x, .. } = frame;
-    let edge = |k: usize, point: &[f64; 3]| {
-        Some([area.x(x.place(point[0])?.share), area.y(y.place(point[k])?.share)])
-    };
+    let edge = |k: usize, point: &[f64; 3]| Some([area.x(x.place(point[0])?.share), area.y(y.place(point[k])?.share)]);
     let lower = band.points.iter().filter_map(|point| edge(1, point));
     let upper = band.points.iter().rev().filter_map(|point| edge(2, point));
     let around: Vec<[f64; 2]> = lower.chain(upper).collect();

@@ -115,14 +115,7 @@ impl Canvas {
         self.neutral_line("axis", "#52606d", from, to, " stroke-dasharray=\"4 3\"");
     }
 
-    fn neutral_line(
-        &mut self,
-        class: &str,
-        colour: &str,
-        [x, y]: [f64; 2],
-        [to_x, to_y]: [f64; 2],
-        dash: &str,
-    ) {
+    fn neutral_line(&mut self, class: &str, colour: &str, [x, y]: [f64; 2], [to_x, to_y]: [f64; 2], dash: &str) {
         self.put(format_args!(
             r#"<line class="{class}" x1="{x:.2}" y1="{y:.2}" x2="{to_x:.2}" y2="{to_y:.2}" stroke="{colour}"{dash}/>"#
         ));
@@ -132,9 +125,7 @@ impl Canvas {
     pub(crate) fn begin_series(&mut self, style: usize) {
         let class = style % STYLES.len();
         let colour = STYLES[class].colour;
-        self.put(format_args!(
-            r#"<g class="s{class}" color="{colour}" stroke="currentColor" fill="currentColor">"#
-        ));
+        self.put(format_args!(r#"<g class="s{class}" color="{colour}" stroke="currentColor" fill="currentColor">"#));
     }
 
     /// Ends the marks of a series.
@@ -195,8 +186,7 @@ impl Canvas {
         rest: std::fmt::Arguments<'_>,
     ) {
         // The colour of the style sheet on light paper.
-        let [red, green, blue] =
-            [0.0, 114.0, 178.0].map(|it: f64| (255.0 + 0.65 * share * (it - 255.0)).round() as u8);
+        let [red, green, blue] = [0.0, 114.0, 178.0].map(|it: f64| (255.0 + 0.65 * share * (it - 255.0)).round() as u8);
         self.put(format_args!(
             r##"<rect class="heat" style="--share:{share:.3}" x="{left:.2}" y="{top:.2}" width="{width:.2}" height="{height:.2}" fill="#{red:02x}{green:02x}{blue:02x}"{rest}"##
         ));
@@ -221,11 +211,8 @@ impl Canvas {
                 ));
             }
             MarkerSymbol::Triangle => {
-                let corners = [
-                    [x, y - 1.2 * radius],
-                    [x + 1.1 * radius, y + 0.8 * radius],
-                    [x - 1.1 * radius, y + 0.8 * radius],
-                ];
+                let corners =
+                    [[x, y - 1.2 * radius], [x + 1.1 * radius, y + 0.8 * radius], [x - 1.1 * radius, y + 0.8 * radius]];
                 self.polygon(&corners, hollow);
             }
             MarkerSymbol::Diamond => {

@@ -122,8 +122,7 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
     if usual_residual && (&*solver.formulation, &*solver.method) == (usual.formulation, usual.method) {
         return None;
     }
-    let shown =
-        [&solver.formulation, &solver.pose_residual, &solver.method].map(|word| escape_invisible(word));
+    let shown = [&solver.formulation, &solver.pose_residual, &solver.method].map(|word| escape_invisible(word));
     let [formulation, pose_residual, method] = &shown;
     let residual = if poses { format!(" {pose_residual} residual of poses,") } else { String::new() };
     let mut words = format!("{formulation},{residual} {method}");
@@ -142,9 +141,8 @@ const SHOWN: usize = 6;
 /// Evidence for each group of terms, and their effects.
 fn describe_corrected(out: &mut String, file: &CalibrationFile) {
     let Some(found) = &file.corrected else { return };
-    let left_out = |sizes: &BTreeMap<String, f64>| {
-        found.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out)
-    };
+    let left_out =
+        |sizes: &BTreeMap<String, f64>| found.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out);
     if let Some(chosen) = left_out(&found.sizes) {
         let without = found.sizes.iter().filter(|(_, size)| **size > 0.0).filter_map(|(group, _)| {
             let mut sizes = found.sizes.clone();
@@ -161,19 +159,14 @@ fn describe_corrected(out: &mut String, file: &CalibrationFile) {
         });
         let mut without: Vec<(&str, f64)> = without.collect();
         without.dedup_by(|a, b| a.0 == b.0);
-        let words: Vec<String> =
-            without.iter().map(|(group, it)| format!("without {group} {it:.3}")).collect();
+        let words: Vec<String> = without.iter().map(|(group, it)| format!("without {group} {it:.3}")).collect();
         if !words.is_empty() {
             let words = words.join(", ");
             line(out, "left out", &format!("error over that of geometry alone: {chosen:.3}; {words}"));
         }
     }
     let told = found.effects.iter().filter(|it| it.found).take(SHOWN);
-    lines(
-        out,
-        "joints do",
-        told.map(|it| format!("{} ({} mm at the target, RMS)", it.words, number(it.effect_mm))),
-    );
+    lines(out, "joints do", told.map(|it| format!("{} ({} mm at the target, RMS)", it.words, number(it.effect_mm))));
     lines(out, "ambiguous", &found.indistinguishable);
 }
 
@@ -205,11 +198,7 @@ fn trust(out: &mut String, file: &CalibrationFile) {
     let joints: Vec<String> =
         joints.iter().map(|it| format!("{} {} mm", it.joint, number(it.left_nominal_rms_mm))).collect();
     if !joints.is_empty() {
-        line(
-            out,
-            "per joint",
-            &format!("error (RMS) with this axis alone left nominal: {}", joints.join(", ")),
-        );
+        line(out, "per joint", &format!("error (RMS) with this axis alone left nominal: {}", joints.join(", ")));
     }
     let changes = file.corrections.iter().filter_map(|it| {
         let change = it.change.as_ref()?;

@@ -7,8 +7,7 @@ use super::super::table::{
 use super::review_points::reasons;
 use super::{Expectation, expected_summary};
 use poecal_calibrate::{
-    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, FEWEST_HELD_OUT, Level, ModelAccuracy,
-    SetAccuracy,
+    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, FEWEST_HELD_OUT, Level, ModelAccuracy, SetAccuracy,
 };
 use poecal_model::measurement::Quantity;
 use poecal_results::calibration_file::CalibrationFile;
@@ -105,11 +104,7 @@ pub(crate) fn has_terms(file: &CalibrationFile) -> bool {
 pub(crate) fn judged_on(file: &CalibrationFile) -> String {
     let LeadingRows { set, without, .. } = LeadingRows::from_calibration(file);
     let rows = if set.calibrated.of_pictures(set.count).is_some() { "pictures" } else { "rows" };
-    if file.accuracy.held_out.is_some() {
-        format!("{rows} held out")
-    } else {
-        format!("fitted {rows}{without}")
-    }
+    if file.accuracy.held_out.is_some() { format!("{rows} held out") } else { format!("fitted {rows}{without}") }
 }
 
 /// An error of the delivered model on rows that were left out of its fits.
@@ -181,9 +176,7 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
             line(out, judging, &format!("{} rows{largest}{beside}", set.count));
         }
     }
-    if let (Some(before), Some(after), None) =
-        (before.1.pixels, after.1.pixels, after.1.of_pictures(set.count))
-    {
+    if let (Some(before), Some(after), None) = (before.1.pixels, after.1.pixels, after.1.of_pictures(set.count)) {
         let (was, is, mm) = (number(before.rms_px), number(after.rms_px), number(after.rms_mm));
         let words = format!("{was} px before, {is} px after (RMS), {mm} mm at the board square to the ray");
         line(out, "corners", &words);
@@ -225,9 +218,8 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
     let here = if inside_mm.is_some() { "near measured configurations" } else { "of predictions" };
     let expected = format!("{error} mm (RMS) {here}, 95 % below {bound} mm{why}");
     let nominal = nominal_mm.map(|it| format!(" (your model: {} mm)", number(it)));
-    let inside = inside_mm.map(|it| {
-        format!("{} mm anywhere inside the sampled range{}", number(it), nominal.unwrap_or_default())
-    });
+    let inside = inside_mm
+        .map(|it| format!("{} mm anywhere inside the sampled range{}", number(it), nominal.unwrap_or_default()));
     lines(out, "expected", [Some(expected), inside].into_iter().flatten());
     let place = match file.verdict.as_ref().map(|it| it.level) {
         Some(Level::Located) => "for the positions of targets and devices",
@@ -275,8 +267,7 @@ mod tests {
     /// All of thirty poses are fitted: the stated errors before and after exclude the one with a large deviation.
     #[test]
     fn suspected_rows_do_not_count_where_none_is_held_out() {
-        let mut made =
-            Simulation { count: 30, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+        let mut made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
         let gross = GrossErrors { share: 0.04, ..GrossErrors::default() }.spoil(&mut made.data).len();
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());

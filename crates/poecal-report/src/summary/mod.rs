@@ -6,9 +6,7 @@ mod names;
 mod review_points;
 mod short_table;
 
-pub(crate) use errors::{
-    LeadingRows, ModelRow, cross_validated, has_terms, judged_on, none_held_out, why_larger,
-};
+pub(crate) use errors::{LeadingRows, ModelRow, cross_validated, has_terms, judged_on, none_held_out, why_larger};
 pub(crate) use names::{MOST, names};
 pub(crate) use review_points::{PointSource, ReviewPoint, SEE_ROBUST, look_at, reasons, unknowns_words};
 pub use short_table::ShortTable;
@@ -139,9 +137,7 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
     };
     let level = verdict.level.words();
     match reasons(file).into_iter().next() {
-        Some(reason) if verdict.level == Level::DoNotUse => {
-            line(out, "verdict", &format!("{level}: {reason}"))
-        }
+        Some(reason) if verdict.level == Level::DoNotUse => line(out, "verdict", &format!("{level}: {reason}")),
         _ => line(out, "verdict", level),
     }
     if let Some(confirmed) = &verdict.confirmed {
@@ -153,9 +149,8 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
 /// A repair and its gain.
 pub(crate) fn repaired_words(found: &Event) -> String {
     let gain = found.error_before_mm.zip(found.error_after_mm);
-    let gain = gain.map(|(before, after)| {
-        format!("; cross-validation {} mm (RMS) instead of {}", number(after), number(before))
-    });
+    let gain = gain
+        .map(|(before, after)| format!("; cross-validation {} mm (RMS) instead of {}", number(after), number(before)));
     format!("{}{}", found.statement, gain.unwrap_or_default())
 }
 
@@ -225,9 +220,11 @@ fn describe_determined(out: &mut String, file: &CalibrationFile) {
             let off = number((-z).clamp(-1.0, 1.0).acos().to_degrees());
             line(out, "gravity", &format!("along {x:.3}, {y:.3}, {z:.3} of the base, {off} deg from -z"));
         }
-    } else if file.blocks.as_ref().is_some_and(|it| {
-        it.held.iter().any(|name| file.has_joint(name.strip_suffix(".axis").unwrap_or(name)))
-    }) {
+    } else if file
+        .blocks
+        .as_ref()
+        .is_some_and(|it| it.held.iter().any(|name| file.has_joint(name.strip_suffix(".axis").unwrap_or(name))))
+    {
         line(out, "corrected", "not fitted: beside axes that are held, only groups of terms that are named");
     }
 }
@@ -279,9 +276,7 @@ pub(crate) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, Str
             let value = format!("{sign}{}", number(unit.in_shown_unit(coefficient.abs())));
             // The prior alone determines as much as half its own width.
             let (spread, open) = match file.sigma(&name) {
-                Some(sigma) if sigma > 0.5 * joint.kind.deviation_of(*term) => {
-                    (String::new(), " (not determined)")
-                }
+                Some(sigma) if sigma > 0.5 * joint.kind.deviation_of(*term) => (String::new(), " (not determined)"),
                 Some(sigma) => (format!(" ± {}", number(unit.in_shown_unit(sigma))), ""),
                 None if file.is_open(&name) => (String::new(), " (not determined)"),
                 None => (String::new(), ""),

@@ -114,8 +114,7 @@ pub(crate) fn reasons(file: &CalibrationFile) -> Vec<String> {
         return Vec::new();
     };
     let moved = |reason: &str| {
-        let joints =
-            file.coverage.iter().filter_map(|it| Some((&it.joint, reason.strip_prefix(&*it.joint)?)));
+        let joints = file.coverage.iter().filter_map(|it| Some((&it.joint, reason.strip_prefix(&*it.joint)?)));
         let mut shares = joints.filter_map(|(joint, rest)| {
             let (share, _) = rest.strip_prefix(" was moved through ")?.split_once(" %")?;
             Some(format!("{joint} {share} %"))
@@ -151,8 +150,7 @@ fn suspects_words(file: &CalibrationFile) -> String {
     };
     let is_plain = robust.suspected.training > 0 && robust.loss.is_none();
     let see = if is_plain { SEE_ROBUST } else { "" };
-    let sets =
-        format!("{} fitted{counted}{see}, {} held out", robust.suspected.training, robust.suspected.held_out);
+    let sets = format!("{} fitted{counted}{see}, {} held out", robust.suspected.training, robust.suspected.held_out);
     let worst: Vec<String> =
         file.outliers.iter().take(WORST).scan("", |last, outlier| Some(name_row(outlier, last))).collect();
     let worst = if worst.is_empty() { String::new() } else { format!("; worst {}", worst.join(", ")) };
@@ -161,11 +159,8 @@ fn suspects_words(file: &CalibrationFile) -> String {
 
 /// A row by file and line, the file only if it differs from the one before.
 fn name_row<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
-    let place = if *last == outlier.file {
-        outlier.row.to_string()
-    } else {
-        format!("{}:{}", outlier.file, outlier.row)
-    };
+    let place =
+        if *last == outlier.file { outlier.row.to_string() } else { format!("{}:{}", outlier.file, outlier.row) };
     *last = &outlier.file;
     match outlier.residual.leading_value() {
         Some((quantity, residual)) => format!("{place} by {} {}", number(residual), quantity.unit().symbol()),

@@ -93,10 +93,8 @@ fn blocks(file: &CalibrationFile) -> Vec<LabelledLines> {
     super::rest(&mut rest, file);
     let mut all = parsed(&top);
     for (k, point) in look_at(file).into_iter().enumerate() {
-        let is_doubt = matches!(
-            point.place,
-            PointSource::Suspicion(_) | PointSource::Diagnosis(_) | PointSource::Warning(_)
-        );
+        let is_doubt =
+            matches!(point.place, PointSource::Suspicion(_) | PointSource::Diagnosis(_) | PointSource::Warning(_));
         let mut text = String::new();
         lines(&mut text, "look at", [&point.text]);
         let rank = if k == 0 || is_doubt { FIRST_POINTS } else { POINTS };
@@ -114,8 +112,7 @@ fn parsed(table: &str) -> Vec<LabelledLines> {
         match (label.trim(), blocks.last_mut()) {
             ("", Some(block)) => block.text.push(text.to_owned()),
             (label, _) => {
-                let rank =
-                    RANKS.iter().find(|(_, labels)| labels.contains(&label)).map_or(0, |(rank, _)| *rank);
+                let rank = RANKS.iter().find(|(_, labels)| labels.contains(&label)).map_or(0, |(rank, _)| *rank);
                 blocks.push(LabelledLines {
                     label: label.to_owned(),
                     text: vec![text.to_owned()],
@@ -157,8 +154,7 @@ fn choose(blocks: &mut [LabelledLines], lines: usize) {
 
 /// Assigns the first points their lines: each has one before any has a second.
 fn share_room(blocks: &mut [LabelledLines], room: &mut usize) {
-    let mut points: Vec<&mut LabelledLines> =
-        blocks.iter_mut().filter(|it| it.rank == FIRST_POINTS).collect();
+    let mut points: Vec<&mut LabelledLines> = blocks.iter_mut().filter(|it| it.rank == FIRST_POINTS).collect();
     let mut given = vec![0; points.len()];
     let longest = points.iter().map(|it| it.text.len()).max().unwrap_or_default();
     for line in 0..longest {

@@ -19,12 +19,7 @@ const NOISE_M: f64 = 5e-5;
 const NOISE_RAD: f64 = 1e-4;
 
 fn simulation() -> Simulation {
-    Simulation {
-        count: ROWS,
-        noise_position_m: NOISE_M,
-        noise_rotation_rad: NOISE_RAD,
-        ..Simulation::default()
-    }
+    Simulation { count: ROWS, noise_position_m: NOISE_M, noise_rotation_rad: NOISE_RAD, ..Simulation::default() }
 }
 
 /// An elbow as it was made: with errors of its own.
@@ -111,13 +106,7 @@ fn a_joint_that_moved_is_named() {
         let tip = &found.tip;
         let truth = tip_distance(&actual, &joint3_moved(&actual, 0.1));
         off = off.max((tip.rms_m - truth).abs() / truth);
-        assert_eq!(
-            found.is_moved(),
-            Some(true),
-            "{:.4} of {:.4} mm",
-            1e3 * tip.rms_m,
-            1e3 * tip.limit_m.unwrap()
-        );
+        assert_eq!(found.is_moved(), Some(true), "{:.4} of {:.4} mm", 1e3 * tip.rms_m, 1e3 * tip.limit_m.unwrap());
         assert_eq!(compare(&first, &second, Some(2.0 * truth)).unwrap().is_moved(), Some(false));
         let offset = found.joints[2].change.offset.unwrap().to_degrees();
         worst = worst.max((offset - 0.1).abs());
@@ -197,27 +186,17 @@ fn standard_deviations_of_the_parts_are_those_of_sessions() {
     let actual = make_robot(3);
     let files: Vec<CalibrationFile> =
         trials.seeds().map(|seed| session(&elbow(), &actual, SessionKind::POSE, seed)).collect();
-    let changes = |file: &CalibrationFile| -> Vec<_> {
-        file.corrections.iter().filter_map(|it| it.change.clone()).collect()
-    };
+    let changes =
+        |file: &CalibrationFile| -> Vec<_> { file.corrections.iter().filter_map(|it| it.change.clone()).collect() };
     let count = files.len() as f64;
     let mut squares = Vec::new();
     for joint in 0..6 {
-        let numbers =
-            |of: &dyn Fn(&poecal_results::calibration_file::JointChangeEntry) -> [f64; 4]| -> Vec<[f64; 4]> {
-                files.iter().map(|file| of(&changes(file)[joint])).collect()
-            };
+        let numbers = |of: &dyn Fn(&poecal_results::calibration_file::JointChangeEntry) -> [f64; 4]| -> Vec<[f64; 4]> {
+            files.iter().map(|file| of(&changes(file)[joint])).collect()
+        };
         let parts: [(&str, Vec<[f64; 4]>); 3] = [
-            (
-                "offset",
-                numbers(&|it| [it.offset_deg.unwrap_or(0.0), 0.0, 0.0, it.sigma_offset.unwrap_or(0.0)]),
-            ),
-            (
-                "tilt",
-                numbers(&|it| {
-                    [it.tilt_deg[0], it.tilt_deg[1], it.tilt_deg[2], it.sigma_tilt_deg.unwrap_or(0.0)]
-                }),
-            ),
+            ("offset", numbers(&|it| [it.offset_deg.unwrap_or(0.0), 0.0, 0.0, it.sigma_offset.unwrap_or(0.0)])),
+            ("tilt", numbers(&|it| [it.tilt_deg[0], it.tilt_deg[1], it.tilt_deg[2], it.sigma_tilt_deg.unwrap_or(0.0)])),
             (
                 "shift",
                 numbers(&|it| {
@@ -228,8 +207,7 @@ fn standard_deviations_of_the_parts_are_those_of_sessions() {
         ];
         for (name, rows) in parts {
             let mean = |k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / count;
-            let spread =
-                |k: usize| rows.iter().map(|row| (row[k] - mean(k)).powi(2)).sum::<f64>() / (count - 1.0);
+            let spread = |k: usize| rows.iter().map(|row| (row[k] - mean(k)).powi(2)).sum::<f64>() / (count - 1.0);
             let found: f64 = (0..3).map(spread).sum();
             let stated = rows.iter().map(|row| row[3].powi(2)).sum::<f64>() / count;
             if stated > 0.0 {

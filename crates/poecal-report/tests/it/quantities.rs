@@ -73,8 +73,7 @@ fn names_of_quantities_and_their_columns_follow_from_one_table() {
 
 #[test]
 fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
-    let mut rows: Vec<Vec<String>> =
-        ROWS.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    let mut rows: Vec<Vec<String>> = ROWS.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
     let column = |name: &str| rows[0].iter().position(|it| it == name).unwrap();
     let (first, rotation) = (column("position_nominal[mm]"), column("rotation_nominal[deg]"));
     let points = rows.iter().filter(|row| row[rotation].is_empty()).count();
@@ -94,10 +93,7 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     let mut nothing = rows.clone();
     nothing[1][first..first + 12].iter_mut().for_each(String::clear);
     let error = Residuals::parse(&text(&nothing), "residuals.csv").unwrap_err().to_string();
-    assert!(
-        error.starts_with("residuals.csv:2:") && error.contains("found ``, expected a number"),
-        "{error}"
-    );
+    assert!(error.starts_with("residuals.csv:2:") && error.contains("found ``, expected a number"), "{error}");
 
     // Orientations alone, fitted or held out as before.
     for row in rows.iter_mut().skip(1).filter(|row| row[rotation].is_empty()) {
@@ -116,11 +112,9 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     let file = CalibrationFile::parse(&value.to_string(), "calibration.json").unwrap();
     assert_eq!(CalibrationFile::parse(&file.to_text().unwrap(), "calibration.json").unwrap(), file);
     let page = calibration_page(&file, &residuals).unwrap().concat();
-    for words in [
-        "Rotation error on rows held out, degrees",
-        "rotation error, °",
-        r#""lead":{"name":"rotation","unit":"°"}"#,
-    ] {
+    for words in
+        ["Rotation error on rows held out, degrees", "rotation error, °", r#""lead":{"name":"rotation","unit":"°"}"#]
+    {
         assert!(page.contains(words), "{words}");
     }
     let text = summary(&file, Detail::Full);

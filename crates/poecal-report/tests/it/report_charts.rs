@@ -61,8 +61,7 @@ fn rows_of(data: &Value, class: &str) -> Vec<usize> {
 
 #[test]
 fn every_row_has_its_dot_where_its_error_is() {
-    let mut made =
-        Simulation { count: 80, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let gross = GrossErrors { share: 0.05, ..GrossErrors::default() }.spoil(&mut made.data);
     let page = Session::from_dataset(&elbow(), made.data).page();
     let (data, chart) = (data_of(&page), chart(&page, "rows"));
@@ -98,25 +97,18 @@ fn long_sessions_have_few_dots_and_every_chart() {
         let drawn = |markup: &str| markup.matches("h0").count() + markup.matches("h1").count();
         let [rows, components, joints] = ["rows", "components", "joints"].map(|name| chart(&page, name));
         assert!(drawn(rows) <= most && drawn(rows) > most * 8 / 10, "{}", drawn(rows));
-        for cell in components
-            .split("class=\"cell\"")
-            .chain(joints.split("class=\"cell\""))
-            .filter(|it| it.contains("<svg"))
+        for cell in
+            components.split("class=\"cell\"").chain(joints.split("class=\"cell\"")).filter(|it| it.contains("<svg"))
         {
             let is_still = cell.contains("does not move with this joint");
             assert!(drawn(cell) <= few && (drawn(cell) > few / 2) != is_still, "{}", drawn(cell));
         }
-        assert_eq!(
-            (components.matches("class=\"cell\"").count(), joints.matches("class=\"cell\"").count()),
-            (6, 6)
-        );
+        assert_eq!((components.matches("class=\"cell\"").count(), joints.matches("class=\"cell\"").count()), (6, 6));
         // Each residual over each joint has an axis, and a curve of its own.
         assert_eq!(joints.matches("<g class=\"y\"").count(), 6 * 8);
         assert!(joints.matches("class=\"ink line\" d=\"m").count() > 40);
         assert!(drawn(chart(&page, "normal")) > 100 && drawn(chart(&page, "leverage")) > count.min(most) / 2);
-        assert!(
-            chart(&page, "histogram").contains("s0 bars") && chart(&page, "histogram").contains("s1 line")
-        );
+        assert!(chart(&page, "histogram").contains("s0 bars") && chart(&page, "histogram").contains("s1 line"));
     }
 }
 
@@ -137,10 +129,8 @@ fn a_joint_of_the_other_arm_has_no_residual_along_its_motion() {
     let joints = chart(&page, "joints");
     // Number of rows of each target with a dot over a joint, and number of its rows that are not suspected.
     let counted = |joint: &str| {
-        let cell = joints
-            .split("class=\"cell\"")
-            .find(|it| it.contains(&format!("<p class=\"name\">{joint}<")))
-            .unwrap();
+        let cell =
+            joints.split("class=\"cell\"").find(|it| it.contains(&format!("<p class=\"name\">{joint}<"))).unwrap();
         let mut found = [0, 0];
         for class in ["s0", "s1"] {
             for (row, dot) in rows_of(&data, class).into_iter().zip(dots(cell, class)) {

@@ -48,8 +48,7 @@ impl Session {
 
 /// Rows with several configurations that were repeated.
 fn repeated_rows() -> Dataset {
-    let mut made =
-        Simulation { count: 50, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
+    let mut made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap();
     for row in (0..5).cycle().take(20) {
         let readings = made.data.readings(row).to_vec();
         let mut observation = made.data.observations[row];
@@ -81,8 +80,7 @@ pub(crate) fn data_of(page: &str) -> Value {
 pub(crate) fn numbers_of(column: &Value) -> Vec<Option<f64>> {
     const LETTERS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let [low, step] = ["low", "step"].map(|key| column[key].as_f64().unwrap());
-    let letters: Vec<usize> =
-        column["bytes"].as_str().unwrap().chars().map(|it| LETTERS.find(it).unwrap()).collect();
+    let letters: Vec<usize> = column["bytes"].as_str().unwrap().chars().map(|it| LETTERS.find(it).unwrap()).collect();
     let whole = |four: &[usize]| four.iter().fold(0, |sum, letter| 64 * sum + letter);
     let numbers = letters.chunks(4).map(whole);
     numbers.map(|it| (it != 0xff_ffff).then_some(low + step * it as f64)).collect()
@@ -136,8 +134,7 @@ fn every_figure_is_that_of_the_calibration_file() {
     ] {
         check_figures(name, &Session::new(&robot, kind, 60));
     }
-    let mut made =
-        Simulation { count: 80, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let gross = GrossErrors { share: 0.05, ..GrossErrors::default() }.spoil(&mut made.data);
     let session = Session::from_dataset(&elbow(), made.data);
     check_figures("elbow, wrong rows", &session);
@@ -152,16 +149,13 @@ fn every_figure_is_that_of_the_calibration_file() {
 /// Charts and tables are of one model: the delivered one.
 #[test]
 fn the_page_shows_the_delivered_model() {
-    let data =
-        Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap().data;
+    let data = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POINT).unwrap().data;
     let corrections = Corrections::Sizes(Sizes::COMMON);
     let options = CalibrationOptions { corrections, ..CalibrationOptions::default() };
     let corrected = Session::with_options(&elbow(), data.clone(), &options);
     let geometry = CalibrationOptions { corrections: Corrections::Off, ..options };
     let calibrated = Session::with_options(&elbow(), data, &geometry);
-    for (session, name, other) in
-        [(&corrected, "corrected", "calibrated"), (&calibrated, "calibrated", "corrected")]
-    {
+    for (session, name, other) in [(&corrected, "corrected", "calibrated"), (&calibrated, "calibrated", "corrected")] {
         let page = session.page();
         for words in [
             "measured minus predicted by the {} model",
@@ -191,20 +185,14 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
         targets: pairs([("left", "left_hand"), ("right", "right_hand")]).into(),
         ..ChainSelection::default()
     };
-    let document = UrdfDocument::parse(
-        include_str!("../../../poecal-testing/data/torso.urdf"),
-        "torso.urdf",
-        &selection,
-    )
-    .unwrap();
+    let document =
+        UrdfDocument::parse(include_str!("../../../poecal-testing/data/torso.urdf"), "torso.urdf", &selection).unwrap();
     let session = Session::new(document.robot(), SessionKind::POSE, 200);
     check_figures("torso", &session);
     let page = session.page();
     assert!(page.contains("<td class=\"word\">link of torso2</td>"));
     let data = data_of(&page);
-    let on = |list: &str| -> Vec<Value> {
-        data[list].as_array().unwrap().iter().map(|it| it["on"].clone()).collect()
-    };
+    let on = |list: &str| -> Vec<Value> { data[list].as_array().unwrap().iter().map(|it| it["on"].clone()).collect() };
     let expected = [Value::Null, 0.into(), 1.into(), 2.into(), 3.into(), 4.into(), 5.into(), 6.into()];
     assert_eq!(on("joints")[..8], expected);
     assert_eq!((&on("joints")[8], &on("joints")[9]), (&Value::from(1), &Value::from(1)));
@@ -275,10 +263,8 @@ fn the_page_made_again_from_files_is_the_same() {
     let inputs = Inputs { model: "robot.urdf".into(), ..Inputs::default() };
     let direct = CalibrationFile::new(&session.calibration, &session.data, inputs);
     let read = Residuals::parse(&session.residuals().text(), "residuals.csv").unwrap();
-    let [first, again] = [
-        calibration_page(&direct, &session.residuals()).unwrap(),
-        calibration_page(&session.file, &read).unwrap(),
-    ];
+    let [first, again] =
+        [calibration_page(&direct, &session.residuals()).unwrap(), calibration_page(&session.file, &read).unwrap()];
     assert!(first == again);
 }
 
@@ -290,12 +276,10 @@ fn names_are_no_markup() {
         let z = Screw::revolute(&Vector3::z(), &Vector3::zeros());
         let y = Screw::revolute(&Vector3::y(), &Vector3::new(0.2, 0.0, 0.3));
         let joints = vec![Joint::revolute(name, z), Joint::revolute("elbow", y)];
-        let mut robot =
-            Robot::new(name, joints, Pose::from_translation(Vector3::new(0.5, 0.0, 0.3))).unwrap();
+        let mut robot = Robot::new(name, joints, Pose::from_translation(Vector3::new(0.5, 0.0, 0.3))).unwrap();
         robot.base_name = name.to_owned();
         robot.tip_name = name.to_owned();
-        let mut made =
-            Simulation { count: 40, ..Simulation::default() }.run(&robot, SessionKind::POSE).unwrap();
+        let mut made = Simulation { count: 40, ..Simulation::default() }.run(&robot, SessionKind::POSE).unwrap();
         made.data.files.push(name.into());
         made.data.targets[0] = Some(name.to_owned());
         made.data.ids = vec![name.to_owned(); made.data.len()];
@@ -310,10 +294,7 @@ fn names_are_no_markup() {
     }
     assert!(!odd.contains("alert(\"1\")"));
     let data = data_of(&odd);
-    assert_eq!(
-        (&data["joints"][0]["name"], &data["targets"][0]["name"]),
-        (&Value::from(name), &Value::from(name))
-    );
+    assert_eq!((&data["joints"][0]["name"], &data["targets"][0]["name"]), (&Value::from(name), &Value::from(name)));
 }
 
 #[test]

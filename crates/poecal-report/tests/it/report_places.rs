@@ -63,9 +63,8 @@ fn spheres_have_their_radius() {
 #[test]
 fn both_arms_are_drawn_with_what_they_hold() {
     let robot = |instruments: &[(&str, &str)], targets: &[(&str, &str)]| {
-        let pairs = |of: &[(&str, &str)]| {
-            of.iter().map(|(name, link)| ((*name).to_owned(), (*link).to_owned())).collect()
-        };
+        let pairs =
+            |of: &[(&str, &str)]| of.iter().map(|(name, link)| ((*name).to_owned(), (*link).to_owned())).collect();
         let selection = ChainSelection {
             base_link: Some("torso".to_owned()),
             instruments: pairs(instruments),

@@ -67,8 +67,7 @@ impl TargetEntry {
     /// The quantities that were measured of it.
     #[must_use]
     pub fn measured_entry(&self) -> MeasuredEntry {
-        let by_quaternion =
-            if self.quaternion_xyzw.is_some() { MeasuredEntry::Pose } else { MeasuredEntry::Position };
+        let by_quaternion = if self.quaternion_xyzw.is_some() { MeasuredEntry::Pose } else { MeasuredEntry::Position };
         self.measured.unwrap_or(by_quaternion)
     }
 }
@@ -112,9 +111,7 @@ impl CalibrationFile {
             for (&term, &coefficient) in of(entry).1 {
                 if !coefficient.is_finite() {
                     let name = &entry.name;
-                    return refuse(format!(
-                        "found {coefficient} as the {term} of joint `{name}`, expected a number"
-                    ));
+                    return refuse(format!("found {coefficient} as the {term} of joint `{name}`, expected a number"));
                 }
                 robot.terms.push(JointTerm { joint, term, coefficient });
             }
@@ -122,18 +119,14 @@ impl CalibrationFile {
         let names: Vec<String> = self.robot.factors.iter().map(|it| it.name.clone()).collect();
         robot = robot.with_factors(&names)?;
         if let Some(factor) = self.robot.factors.iter().find(|it| !it.reference.is_finite()) {
-            return refuse(format!(
-                "found a reference of factor `{}` that is no number, expected one",
-                factor.name
-            ));
+            return refuse(format!("found a reference of factor `{}` that is no number, expected one", factor.name));
         }
         robot.factors.clone_from(&self.robot.factors);
         robot.base_name.clone_from(&self.robot.base_link);
         robot.tip_name.clone_from(&self.robot.tip_link);
         for (index, entry) in self.joints.iter().enumerate() {
             let on = entry.on.as_ref().map(|on| on.body(&robot)).transpose()?;
-            let give_of =
-                entry.compliance_of.as_deref().map(|name| self.joint_that_gives(name, index)).transpose()?;
+            let give_of = entry.compliance_of.as_deref().map(|name| self.joint_that_gives(name, index)).transpose()?;
             (robot.joints[index].stands_on, robot.joints[index].give_of) = (on, give_of);
         }
         robot.masses = self.robot.masses.iter().map(|entry| entry.mass(&robot)).collect::<Result<_>>()?;
@@ -208,13 +201,10 @@ impl CalibrationFile {
         for (index, joint) in robot.joints.iter().enumerate() {
             let Some(of) = joint.give_of else { continue };
             let before = robot.body_before(index).joint();
-            let is_on_it =
-                before.is_some_and(|before| before == of || robot.joints[before].give_of == Some(of));
+            let is_on_it = before.is_some_and(|before| before == of || robot.joints[before].give_of == Some(of));
             if !is_on_it {
                 let (give, name) = (&joint.name, &robot.joints[of].name);
-                return refuse(format!(
-                    "found `{give}` as a compliance of `{name}`, expected it to follow that joint"
-                ));
+                return refuse(format!("found `{give}` as a compliance of `{name}`, expected it to follow that joint"));
             }
         }
         Ok(())
@@ -225,11 +215,7 @@ impl CalibrationFile {
         let found = self.joints.iter().position(|entry| entry.name == name);
         let own = &self.joints[give].name;
         found.filter(|&of| of < give && self.joints[of].compliance_of.is_none()).map_or_else(
-            || {
-                refuse(format!(
-                    "found `{own}` as a compliance of `{name}`, expected one of a joint before it"
-                ))
-            },
+            || refuse(format!("found `{own}` as a compliance of `{name}`, expected one of a joint before it")),
             Ok,
         )
     }
@@ -249,8 +235,7 @@ impl BodyEntry {
             BodyEntry::Base => Ok(Body::Base),
             BodyEntry::LinkOf(name) => {
                 let found = robot.joints.iter().position(|joint| joint.name == *name);
-                let message =
-                    || format!("found the link of joint `{name}`, expected that of a joint of this file");
+                let message = || format!("found the link of joint `{name}`, expected that of a joint of this file");
                 found.map(Body::Link).map_or_else(|| refuse(message()), Ok)
             }
         }

@@ -52,7 +52,8 @@ impl ClockEntry {
 
 /// Standard deviation of an unknown of a clock.
 fn sigma(found: &Uncertainty, station: usize, term: ClockTerm) -> Option<f64> {
-    let is_it = |it: &Parameter| matches!(it, Parameter::ClockUnknown(own) if (own.station, own.term) == (station, term));
+    let is_it =
+        |it: &Parameter| matches!(it, Parameter::ClockUnknown(own) if (own.station, own.term) == (station, term));
     let (_, places) = found.layout.parameters().find(|(parameter, _)| is_it(parameter))?;
     let (place, scale) = *places.first()?;
     let variance = found.covariance.get(place * (found.layout.dim() + 1))?;

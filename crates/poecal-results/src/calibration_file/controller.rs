@@ -36,8 +36,7 @@ impl CalibrationFile {
     fn is_third_axis_open(&self, robot: &Robot) -> bool {
         let Some((second, third, _)) = level(robot) else { return false };
         let is_stated = self.controller.as_ref().is_some_and(|kept| {
-            kept.third_axis.is_some()
-                || kept.readings.iter().any(|it| it.reading == third && it.columns.len() > 1)
+            kept.third_axis.is_some() || kept.readings.iter().any(|it| it.reading == third && it.columns.len() > 1)
         });
         let is_second = |joint: &&poecal_model::robot::Joint| joint.reading.name == second;
         let joint = robot.joints.iter().find(is_second).map(|joint| joint.name.as_str());

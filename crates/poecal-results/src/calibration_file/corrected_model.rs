@@ -194,10 +194,8 @@ impl CorrectedEntry {
             terms: 1e3 * it.terms.0,
             sigma: 1e3 * it.terms.1,
         };
-        let errors = |it: &JointErrors| JointErrorsEntry {
-            joint: it.joint.clone(),
-            parts: it.parts.iter().map(part).collect(),
-        };
+        let errors =
+            |it: &JointErrors| JointErrorsEntry { joint: it.joint.clone(), parts: it.parts.iter().map(part).collect() };
         CorrectedEntry {
             effects: found.effects.each.iter().map(effect).collect(),
             indistinguishable: found.effects.confused.clone(),
@@ -285,8 +283,7 @@ impl GravityEntry {
             return Err(bad(format!("found {found} origins of joints, expected those of {expected}")));
         }
         let axes = joints.iter().zip(&self.joint_origins_m);
-        let axes =
-            axes.map(|(entry, origin)| Ok((entry.nominal_screw.screw(entry)?, Vector3::from(*origin))));
+        let axes = axes.map(|(entry, origin)| Ok((entry.nominal_screw.screw(entry)?, Vector3::from(*origin))));
         let weight = |entry: &WeightEntry| {
             let (name, place) = (entry.at.clone(), Vector3::from(entry.place_m));
             Ok(Weight { name, body: entry.on.body(robot)?, place })

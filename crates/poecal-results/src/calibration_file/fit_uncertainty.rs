@@ -5,9 +5,7 @@ use nalgebra::Matrix3;
 use super::trust::{BootstrapEntry, ExpectedEntry, RangeEntry, held_out};
 use super::{CorrelationsEntry, PoseEntry, UncertaintyEntry, link};
 use super::{in_file_units, trust::by_quantity};
-use poecal_calibrate::{
-    CalibratedTarget, Calibration, Correction, CoverageCheck, Expectations, ModelAccuracy, names,
-};
+use poecal_calibrate::{CalibratedTarget, Calibration, Correction, CoverageCheck, Expectations, ModelAccuracy, names};
 use poecal_fit::parameters::{Parameter, TargetPlace};
 use poecal_fit::uncertainty::{Bootstrap, Discrepancy, Uncertainty};
 use poecal_model::measurement::{Dataset, Quantity};
@@ -37,8 +35,7 @@ impl PredictiveModel<'_> {
             let Parameter::TargetPlace(TargetPlace { target }) = parameter else { return None };
             let own = self.targets.get(*target)?;
             let mount = self.placed.mounted.iter().find(|mount| Some(&mount.name) == own.name.as_ref());
-            let rotation =
-                mount.map_or(self.placed.home.rotation, |mount| self.placed.base_from(mount).rotation);
+            let rotation = mount.map_or(self.placed.home.rotation, |mount| self.placed.base_from(mount).rotation);
             let turn = rotation.transpose() * found.estimate.base_from_target.get(*target)?.rotation;
             Some((places.iter().map(|(place, _)| *place).collect(), turn))
         });
@@ -133,16 +130,11 @@ impl UncertaintyEntry {
         let covariance = turned(&found.covariance);
         let upper = |matrix: &[f64]| -> Vec<f64> {
             let rows = kept.iter().enumerate();
-            rows.flat_map(|(at, &i)| kept[at..].iter().map(move |&j| i * n + j))
-                .map(|place| matrix[place])
-                .collect()
+            rows.flat_map(|(at, &i)| kept[at..].iter().map(move |&j| i * n + j)).map(|place| matrix[place]).collect()
         };
         let correlations = || {
             let whole = kept.iter().flat_map(|&i| kept.iter().map(move |&j| i * n + j));
-            CorrelationsEntry::from_covariance(
-                &whole.map(|place| covariance[place]).collect::<Vec<f64>>(),
-                &unknowns,
-            )
+            CorrelationsEntry::from_covariance(&whole.map(|place| covariance[place]).collect::<Vec<f64>>(), &unknowns)
         };
         let Discrepancy { scatter, extrapolation, standard_deviation, noise, attribution, freedom, lag_one } =
             found.discrepancy;

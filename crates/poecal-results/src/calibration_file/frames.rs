@@ -175,11 +175,7 @@ impl RobotEntry {
 
 impl StationEntry {
     /// Entries of a calibration's stations; empty for a single one without a name.
-    pub(crate) fn all_from_stations(
-        stations: &[CalibratedStation],
-        noise: Noise,
-        errors: &ModelAccuracy,
-    ) -> Vec<Self> {
+    pub(crate) fn all_from_stations(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
         let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
         let entry = |it: &CalibratedStation| StationEntry {
             instrument: it.name.clone(),

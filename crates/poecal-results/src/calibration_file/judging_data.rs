@@ -85,8 +85,7 @@ impl CalibrationFile {
     /// Root mean square error of a model in cross-validation, where no row was held out; millimetres or degrees.
     fn left_out(&self, model: AcceptedModel, quantity: Quantity) -> Option<f64> {
         let found = self.cross_validation.as_ref().filter(|_| self.accuracy.held_out.is_none())?;
-        let corrected =
-            self.corrected.as_ref().filter(|it| model == AcceptedModel::Corrected && it.has_terms());
+        let corrected = self.corrected.as_ref().filter(|it| model == AcceptedModel::Corrected && it.has_terms());
         match corrected {
             Some(corrected) => corrected.left_out_position_mm.filter(|_| quantity == Quantity::Position),
             None => found.random.rms.get(quantity),

@@ -30,9 +30,7 @@ pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use clocks::ClockEntry;
 pub use common_errors::SuspectedConfigurationEntry;
-pub use compensation::{
-    CompensationEntry, DisplacementEntry, ReadingChangeEntry, SpreadEntry, WorkspaceCellEntry,
-};
+pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, SpreadEntry, WorkspaceCellEntry};
 pub use controller::ControllerCounts;
 pub use corrected_model::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
@@ -114,21 +112,14 @@ impl CalibrationFile {
                 known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),
             },
-            stations: StationEntry::all_from_stations(
-                &calibration.stations,
-                calibration.noise,
-                measured_kinds,
-            ),
+            stations: StationEntry::all_from_stations(&calibration.stations, calibration.noise, measured_kinds),
             clocks: ClockEntry::all_from_calibration(calibration, data),
             tool: (&robot.last_joint_from_tip()).into(),
             move_tip: calibration.targets.iter().any(|it| it.name.is_none()),
             targets: bodies::targets(robot, &calibration.targets),
             instruments: InstrumentEntry::all_from_mounts(robot, &robot.instruments),
             compensation: CompensationEntry::from_calibration(calibration).map(Box::new),
-            corrected: calibration
-                .correction
-                .as_ref()
-                .map(|it| Box::new(CorrectedEntry::from_correction(it, data))),
+            corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::from_correction(it, data))),
         }
     }
 
@@ -225,10 +216,9 @@ impl SolverEntry {
             converged: solver.termination.is_success(),
             termination: solver.termination,
             restarts: solver.restarts,
-            chosen_tolerance: calibration.chosen_tolerance.map(|it| ToleranceEntry {
-                angle_deg: it.angle_rad.to_degrees(),
-                length_mm: 1e3 * it.length_m,
-            }),
+            chosen_tolerance: calibration
+                .chosen_tolerance
+                .map(|it| ToleranceEntry { angle_deg: it.angle_rad.to_degrees(), length_mm: 1e3 * it.length_m }),
             trace: solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
             joint_offsets: OffsetEntry::all_from_calibration(calibration),
         }
@@ -343,9 +333,8 @@ impl ScrewEntry {
         let twist = Twist::new(Vector3::from(self.v_m), Vector3::from(self.w));
         let bad = || {
             let (name, kind) = (&of.name, kind.word());
-            ErrorKind::Model.error(format!(
-                "found a screw of joint `{name}` that is no {kind} screw, expected a unit one"
-            ))
+            ErrorKind::Model
+                .error(format!("found a screw of joint `{name}` that is no {kind} screw, expected a unit one"))
         };
         let screw = Screw::project(&twist).ok_or_else(bad)?;
         let off = (screw.twist().to_vector() - twist.to_vector()).norm();

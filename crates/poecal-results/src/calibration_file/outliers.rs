@@ -73,10 +73,7 @@ impl RobustEntry {
                 training: suspected(&calibration.fit_rows),
                 held_out: suspected(&calibration.held_out_rows),
             },
-            without_suspected: OutliersBySet {
-                training: robustness.training_rest,
-                held_out: robustness.held_out_rest,
-            },
+            without_suspected: OutliersBySet { training: robustness.training_rest, held_out: robustness.held_out_rest },
         }
     }
 }
@@ -85,8 +82,7 @@ impl CalibrationFile {
     /// The rows that are not suspected, of data from which the calibration was made. Files are identified by their names without folders.
     pub(crate) fn kept_rows(&self, data: &Dataset) -> Vec<u32> {
         let place = |file: &Path, line: u32| Some((file.file_name()?.to_owned(), line));
-        let suspected: BTreeSet<_> =
-            self.outliers.iter().filter_map(|it| place(Path::new(&it.file), it.row)).collect();
+        let suspected: BTreeSet<_> = self.outliers.iter().filter_map(|it| place(Path::new(&it.file), it.row)).collect();
         let is_kept = |row: &u32| {
             let source = data.observations[*row as usize].source;
             let file = data.files.get(source.file as usize);

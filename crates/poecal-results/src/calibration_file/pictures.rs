@@ -139,7 +139,13 @@ impl PicturesEntry {
         (!options.is_empty()).then(|| {
             format!(
                 "these pictures were read with another {} than the calibration found: name its calibration.json by {}",
-                if options.len() == 2 { "lens and board" } else if lens && other_lens { "lens" } else { "board" },
+                if options.len() == 2 {
+                    "lens and board"
+                } else if lens && other_lens {
+                    "lens"
+                } else {
+                    "board"
+                },
                 options.join(" and ")
             )
         })

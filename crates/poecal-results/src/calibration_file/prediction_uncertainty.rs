@@ -20,17 +20,13 @@ impl UncertaintyEntry {
         let teller = |quantity: Quantity| {
             let is_told = |other: &Quantity| self.discrepancy.get(*other).is_some();
             let like = |other: &Quantity| other.unit() == quantity.unit() && is_told(other);
-            Some(quantity)
-                .filter(is_told)
-                .or_else(|| Quantity::ALL.into_iter().find(like))
-                .unwrap_or(quantity)
+            Some(quantity).filter(is_told).or_else(|| Quantity::ALL.into_iter().find(like)).unwrap_or(quantity)
         };
         let noise = |keyed: &MeasuredQuantities<f64>| {
             let shown = |quantity: Quantity| keyed.get(teller(quantity)).unwrap_or_default();
             ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity)))
         };
-        let attribution =
-            |quantity| self.residuals.get(&teller(quantity)).copied().unwrap_or(Attribution::Robot);
+        let attribution = |quantity| self.residuals.get(&teller(quantity)).copied().unwrap_or(Attribution::Robot);
         let freedom = |quantity| self.freedom.get(&teller(quantity)).copied().unwrap_or(f64::INFINITY);
         Discrepancy {
             scatter: self.inflation,
@@ -58,12 +54,10 @@ impl CalibrationFile {
     #[must_use]
     pub fn is_open(&self, term: &str) -> bool {
         let found = &self.identifiability;
-        let Some((joint, _)) = term.rsplit_once('.').filter(|(_, name)| *name == Term::OFFSET.to_string())
-        else {
+        let Some((joint, _)) = term.rsplit_once('.').filter(|(_, name)| *name == Term::OFFSET.to_string()) else {
             return false;
         };
-        let hidden =
-            found.unidentifiable.iter().chain(&found.structural).filter(|it| it.cause == Cause::JointOffsets);
+        let hidden = found.unidentifiable.iter().chain(&found.structural).filter(|it| it.cause == Cause::JointOffsets);
         hidden.flat_map(|it| &it.joints).any(|name| name == joint)
     }
 
@@ -174,8 +168,7 @@ impl UncertaintyEntry {
             }
         };
         let is_unknown = |parameter: &Parameter| {
-            self.unknowns.is_empty()
-                || names.of_unknowns(parameter).iter().all(|name| self.unknowns.contains(name))
+            self.unknowns.is_empty() || names.of_unknowns(parameter).iter().all(|name| self.unknowns.contains(name))
         };
         let of_joints = self.joint_parameters(robot, first_station).into_iter();
         of_joints.chain(self.targets.iter().enumerate().map(target)).filter(is_unknown).collect()
@@ -199,11 +192,9 @@ impl UncertaintyEntry {
     /// The motions of a frame that are among the unknowns, by the name of its block; `None` if none is.
     fn freedom(&self, block: &str) -> Option<Freedom> {
         const NAMES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
-        let has = |motion: usize| {
-            NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")))
-        };
-        Some(Freedom::from_motions((0..NAMES.len()).filter(|&motion| has(motion))))
-            .filter(|it| it.count() > 0)
+        let has =
+            |motion: usize| NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")));
+        Some(Freedom::from_motions((0..NAMES.len()).filter(|&motion| has(motion)))).filter(|it| it.count() > 0)
     }
 
     /// Naming of the unknowns.

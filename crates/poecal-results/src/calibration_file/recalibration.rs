@@ -150,12 +150,7 @@ impl CalibrationFile {
         ModelEntries::new(&mut file).move_joint(&self.robot()?, repair, self, with_covariance)?;
         if let (Some(corrected), Some(entry)) = (self.corrected_file(), file.corrected.as_deref_mut()) {
             let mut moved = corrected.clone();
-            ModelEntries::new(&mut moved).move_joint(
-                &corrected.robot()?,
-                repair,
-                &corrected,
-                with_covariance,
-            )?;
+            ModelEntries::new(&mut moved).move_joint(&corrected.robot()?, repair, &corrected, with_covariance)?;
             entry.joints = moved.joints;
             entry.robot = moved.robot;
             entry.uncertainty = moved.uncertainty;
@@ -195,8 +190,7 @@ impl<'a> ModelEntries<'a> {
                 let mut offsets = vec![0.0; robot.joints.len()];
                 offsets[at] = repair.step.first().copied().unwrap_or_default();
                 let moved = into_screws(robot, &offsets)?;
-                let bodies =
-                    (0..robot.joints.len()).map(|joint| before_joint(robot, &moved, joint, at)).collect();
+                let bodies = (0..robot.joints.len()).map(|joint| before_joint(robot, &moved, joint, at)).collect();
                 (moved, bodies)
             }
             RepairedPart::Axis => with_axis(robot, at, repair),
@@ -270,11 +264,7 @@ fn columns(file: &CalibrationFile, robot: &Robot, at: usize, repair: &JointRepai
                 }
                 let inverse: Matrix6<f64> = found.estimate.base_from_axis[axis.joint].inverse().adjoint();
                 let it = inverse * twist.to_vector();
-                if axis.kind == JointKind::Revolute {
-                    vec![it[0], it[1], it[3], it[4]]
-                } else {
-                    vec![it[3], it[4]]
-                }
+                if axis.kind == JointKind::Revolute { vec![it[0], it[1], it[3], it[4]] } else { vec![it[3], it[4]] }
             } else if let Some((target, motions)) = parameter.target_motions() {
                 let body = found.estimate.tree.targets().get(target).and_then(|body| body.joint());
                 let is_carried = body.is_some_and(|joint| joint == at || is_after(robot, joint, at));
@@ -285,10 +275,7 @@ fn columns(file: &CalibrationFile, robot: &Robot, at: usize, repair: &JointRepai
                 let turn = place.rotation.transpose();
                 let shift = turn * (twist.v + twist.w.cross(&place.translation));
                 let angle = turn * twist.w;
-                motions
-                    .iter()
-                    .map(|&motion| if motion < 3 { shift[motion] } else { angle[motion - 3] })
-                    .collect()
+                motions.iter().map(|&motion| if motion < 3 { shift[motion] } else { angle[motion - 3] }).collect()
             } else {
                 continue;
             };

@@ -91,8 +91,7 @@ impl RepeatabilityEntry {
                 Some(quantity.unit().in_shown_unit(1.0) * numbers.iter().sum::<f64>() / numbers.len() as f64)
             })
         };
-        let worst =
-            |quantity| Some(each(quantity, |pose| pose.repeatability)?.into_iter().fold(0.0, f64::max));
+        let worst = |quantity| Some(each(quantity, |pose| pose.repeatability)?.into_iter().fold(0.0, f64::max));
         (count > 0).then(|| RepeatabilityEntry {
             poses: count,
             rows: poses.iter().map(|pose| pose.rows.len()).sum(),

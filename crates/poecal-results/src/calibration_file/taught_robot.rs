@@ -34,8 +34,7 @@ impl CalibrationFile {
     /// As [`CalibrationFile::robot`] and [`Robot::arm`].
     pub fn taught_robot(&self, actual: &Robot) -> Result<TaughtRobot> {
         let nominal = self.nominal_robot()?;
-        let as_it_is =
-            || TaughtRobot { robot: nominal.clone(), base: Pose::identity(), tool: Pose::identity() };
+        let as_it_is = || TaughtRobot { robot: nominal.clone(), base: Pose::identity(), tool: Pose::identity() };
         let Some(own) = with_tool_of(actual, &nominal) else { return Ok(as_it_is()) };
         let factors: Vec<f64> = actual.factors.iter().map(|it| it.reference).collect();
         let ((nominal_arm, readings), (actual_arm, others)) = (own.arm(&[])?, actual.arm(&factors)?);

@@ -6,9 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{CorrelationsEntry, JointChangeEntry, PoseEntry, in_file_units};
-use poecal_calibrate::{
-    CoverageCheck, ExpectedPositionErrors, JointCorrection, QuantityCoverage, RangePart, Trust,
-};
+use poecal_calibrate::{CoverageCheck, ExpectedPositionErrors, JointCorrection, QuantityCoverage, RangePart, Trust};
 use poecal_fit::analysis::JointCoverage;
 use poecal_fit::uncertainty::{Attribution, Bootstrap, FoldErrors};
 use poecal_model::measurement::{MeasuredQuantities, Quantity};
@@ -72,10 +70,8 @@ pub struct KeptEntry {
 pub type HeldOutEntry = MeasuredQuantities<KeptEntry>;
 
 pub(crate) fn held_out(kept: &CoverageCheck) -> HeldOutEntry {
-    let entry = |part: QuantityCoverage| KeptEntry {
-        expected_rms: part.expected_rms,
-        inside_bound95: part.inside_bound95,
-    };
+    let entry =
+        |part: QuantityCoverage| KeptEntry { expected_rms: part.expected_rms, inside_bound95: part.inside_bound95 };
     MeasuredQuantities::from_fn(|quantity| kept.parts.get(quantity).map(entry))
 }
 

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use super::CalibrationFile;
 use poecal_arm::lie::rotation;
 use poecal_calibrate::{
-    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, Improvement, JudgedCalibration, JudgedModel,
-    Judgement, MovedDevice, PredictedUncertainty, QuantityCoverage, RefittedPart, accepted_by, improvement,
-    judge,
+    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, Improvement, JudgedCalibration, JudgedModel, Judgement,
+    MovedDevice, PredictedUncertainty, QuantityCoverage, RefittedPart, accepted_by, improvement, judge,
 };
 use poecal_fit::start::faces_on_known_planes;
 use poecal_fit::state::RangeModel;
@@ -84,12 +83,7 @@ impl CalibrationFile {
     ///
     /// # Errors
     /// As [`CalibrationFile::judge`].
-    pub fn improvement(
-        &self,
-        data: &Dataset,
-        refit_frame: bool,
-        refit_tool: bool,
-    ) -> Result<Option<Improvement>> {
+    pub fn improvement(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Option<Improvement>> {
         let corrected = self.corrected_file();
         let file = corrected.as_ref().unwrap_or(self);
         file.with_subject(data, refit_frame, refit_tool, |subject, data| Ok(improvement(subject, data)))
@@ -120,9 +114,7 @@ impl CalibrationFile {
         let corrected = if limits.model == AcceptedModel::Corrected { self.corrected_file() } else { None };
         let model = if corrected.is_some() { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
         let file = corrected.as_ref().unwrap_or(self);
-        file.with_subject(data, refit_frame, refit_tool, |subject, data| {
-            accepted_by(subject, data, limits, model)
-        })
+        file.with_subject(data, refit_frame, refit_tool, |subject, data| accepted_by(subject, data, limits, model))
     }
 
     fn judge_with_refits(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
@@ -145,8 +137,7 @@ impl CalibrationFile {
         }
         let devices = if refit_frame { Vec::new() } else { self.devices_of(data)? };
         let usual = self.base_from_device()?;
-        let (first, further) =
-            devices.split_first().map_or((usual, &[][..]), |(first, further)| (*first, further));
+        let (first, further) = devices.split_first().map_or((usual, &[][..]), |(first, further)| (*first, further));
         let range = |name: &Option<String>| {
             let own = self.stations.iter().find(|it| it.instrument == *name);
             let zero_m = own.and_then(|it| it.zero_mm).map_or(0.0, |zero| 1e-3 * zero);
@@ -218,8 +209,7 @@ impl CalibrationFile {
         let exceeding = describe_exceeding(check);
         let inside = delivered.in_sampled_range;
         let Some(some) = inside.filter(|some| some.count >= FEW.min(judgement.count)) else {
-            let moved =
-                if refit_frame { "" } else { ". If the device was set up again, add `--refit device`" };
+            let moved = if refit_frame { "" } else { ". If the device was set up again, add `--refit device`" };
             let lie = match inside.map_or(0, |some| some.count) {
                 0 => "no row lies".to_owned(),
                 1 => "only 1 row lies".to_owned(),
@@ -252,10 +242,8 @@ impl CalibrationFile {
 /// Shares of errors beyond their bounds.
 fn describe_exceeding(check: &CoverageCheck) -> String {
     let share = |part: QuantityCoverage| 100.0 * (1.0 - part.inside_bound95);
-    let words = check
-        .parts
-        .iter()
-        .map(|(quantity, part)| format!("{:.0} % of the {} errors", share(part), quantity.name()));
+    let words =
+        check.parts.iter().map(|(quantity, part)| format!("{:.0} % of the {} errors", share(part), quantity.name()));
     words.collect::<Vec<_>>().join(" and ")
 }
 

@@ -85,8 +85,7 @@ impl ChangeCovariance {
         };
         let size = places.len();
         let difference = DVector::from_iterator(size, places.iter().map(of));
-        let upper: Vec<f64> =
-            (0..size * size).map(|k| self.covariance[(places[k / size], places[k % size])]).collect();
+        let upper: Vec<f64> = (0..size * size).map(|k| self.covariance[(places[k / size], places[k % size])]).collect();
         let (values, vectors) = linalg::symmetric_eigen(&upper, size);
         let largest = values.last().copied().unwrap_or(0.0);
         let (mut value, mut freedom) = (0.0, 0);

@@ -129,8 +129,7 @@ pub fn compare(
     let all: Vec<usize> = (0..joints.len()).collect();
     let corrected = first.corrected_file().zip(second.corrected_file());
     let (one, other) = corrected.as_ref().map_or((first, second), |(one, other)| (one, other));
-    let expected =
-        |file: &CalibrationFile| file.uncertainty.as_ref().map(|it| it.measured.sigma_position_mm / 1e3);
+    let expected = |file: &CalibrationFile| file.uncertainty.as_ref().map(|it| it.measured.sigma_position_mm / 1e3);
     let expected_m = expected(one).zip(expected(other)).map(|(one, other)| one.hypot(other));
     let sampled = within_sampled(&a, &[&first.coverage, &second.coverage]);
     let tip = tips(&sampled, &one.robot()?, &other.robot()?, base_is_free);
@@ -153,8 +152,7 @@ fn other_robot(a: &Robot, b: &Robot, error: Error) -> Error {
         let message = "found a robot with branches, expected a serial chain: compare its calibrations by `poecal validate` on each other's rows";
         return ErrorKind::Option.error(message);
     }
-    let refused =
-        |words: String| ErrorKind::Option.error(format!("{words}: compare two calibrations of one robot"));
+    let refused = |words: String| ErrorKind::Option.error(format!("{words}: compare two calibrations of one robot"));
     let pairs = a.joints.iter().zip(&b.joints);
     for (k, (one, other)) in pairs.enumerate() {
         if one.name != other.name {
@@ -207,8 +205,7 @@ fn check_nominal(a: &Robot, b: &Robot) -> Result<()> {
 fn tips(sampled: &Robot, a: &Robot, b: &Robot, base_is_free: bool) -> TipDifference {
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
     let b = with_tool_of(a, b).unwrap_or_else(|| b.clone());
-    let readings: Vec<Vec<f64>> =
-        (0..CONFIGURATIONS).map(|_| random_configuration(sampled, &mut generator)).collect();
+    let readings: Vec<Vec<f64>> = (0..CONFIGURATIONS).map(|_| random_configuration(sampled, &mut generator)).collect();
     let pairs: Vec<(Pose, Pose)> =
         readings.iter().map(|q| (b.forward_kinematics(q), a.forward_kinematics(q))).collect();
     // Points do not show the orientation of a tip: its position alone determines the base and the position of the tool.

@@ -69,10 +69,7 @@ pub(crate) fn left_out(robot: &Robot) -> Option<String> {
     let names = robot.targets.iter().map(|(name, _)| name.as_str());
     let names: Vec<&str> = names.filter(|name| *name != MEASURED).collect();
     (!names.is_empty()).then(|| {
-        format!(
-            "the targets {} are not in this form; calibration.json has them in the tip's frame",
-            names.join(", ")
-        )
+        format!("the targets {} are not in this form; calibration.json has them in the tip's frame", names.join(", "))
     })
 }
 

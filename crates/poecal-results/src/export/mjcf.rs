@@ -20,14 +20,9 @@ pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
     let mut indent = 6;
     for (at, (joint, frame)) in plain.joints.iter().zip(&frames.joints).enumerate() {
         let space = " ".repeat(indent);
-        let _ = writeln!(
-            text,
-            "{space}<body name=\"{}\" {}>",
-            escape_attribute(&names.links[at]),
-            pose_attributes(frame)
-        );
         let _ =
-            writeln!(text, "{space}  <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"0.01 0.01 0.01\"/>");
+            writeln!(text, "{space}<body name=\"{}\" {}>", escape_attribute(&names.links[at]), pose_attributes(frame));
+        let _ = writeln!(text, "{space}  <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"0.01 0.01 0.01\"/>");
         let kind = match joint.kind {
             JointKind::Revolute => "hinge",
             JointKind::Prismatic => "slide",
@@ -57,22 +52,7 @@ pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
         let _ = writeln!(text, "{}</body>", " ".repeat(indent));
     }
     text.push_str("    </body>\n  </worldbody>\n");
-    let followers =
-        plain.joints.iter().zip(&names.joints).filter_map(|(it, own)| Some((it, own, plain.leader(it)?)));
-    let equalities: String = followers
-        .map(|(joint, own, leader)| {
-            let (offset, multiplier) =
-                (format_shortest(joint.reading.offset), format_shortest(joint.reading.multiplier));
-            format!(
-                "    <joint joint1=\"{}\" joint2=\"{}\" polycoef=\"{offset} {multiplier} 0 0 0\"/>\n",
-                escape_attribute(own),
-                escape_attribute(&names.joints[leader])
-            )
-        })
-        .collect();
-    if !equalities.is_empty() {
-        let _ = write!(text, "  <equality>\n{equalities}  </equality>\n");
-    }
+    text.push_str(&equalities(&plain, &names));
     text.push_str("</mujoco>\n");
     let again = read_back(&text, "robot.xml", Some((&names.base, &names.tip)))?;
     let masses = "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file";
@@ -80,10 +60,25 @@ pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
     Ok(ExportedText { text, notes, proof: Proof::Again(again.into()) })
 }
 
+/// Equations of the joints that follow others; empty if none does.
+fn equalities(plain: &Robot, names: &ExportNames) -> String {
+    let followers = plain.joints.iter().zip(&names.joints).filter_map(|(it, own)| Some((it, own, plain.leader(it)?)));
+    let lines: String = followers
+        .map(|(joint, own, leader)| {
+            let [offset, multiplier] = [joint.reading.offset, joint.reading.multiplier].map(format_shortest);
+            format!(
+                "    <joint joint1=\"{}\" joint2=\"{}\" polycoef=\"{offset} {multiplier} 0 0 0\"/>\n",
+                escape_attribute(own),
+                escape_attribute(&names.joints[leader])
+            )
+        })
+        .collect();
+    if lines.is_empty() { lines } else { format!("  <equality>\n{lines}  </equality>\n") }
+}
+
 /// Attributes of a pose.
 fn pose_attributes(pose: &Pose) -> String {
     let [x, y, z, w] = pose.quaternion_xyzw();
-    let numbers =
-        |numbers: &[f64]| numbers.iter().map(|&it| format_shortest(it)).collect::<Vec<_>>().join(" ");
+    let numbers = |numbers: &[f64]| numbers.iter().map(|&it| format_shortest(it)).collect::<Vec<_>>().join(" ");
     format!("pos=\"{}\" quat=\"{}\"", numbers(&tidy_numbers(pose.translation.into())), numbers(&[w, x, y, z]))
 }

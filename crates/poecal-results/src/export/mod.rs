@@ -25,8 +25,8 @@ pub use onto_urdf::write_onto;
 
 use super::model::{Model, ModelFormat, convert};
 use export_check::{
-    CONFIGURATIONS, ExportedText, Proof, SAME, export_error, is_same, left_out, read_back,
-    remaining_difference, unreadable_error,
+    CONFIGURATIONS, ExportedText, Proof, SAME, export_error, is_same, left_out, read_back, remaining_difference,
+    unreadable_error,
 };
 use origins::Flavour;
 use poecal_formats::proof::Difference;
@@ -186,12 +186,7 @@ fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>)
 }
 
 /// A model's own forms.
-fn convert_model(
-    model: &Model,
-    robot: &Robot,
-    to: ModelFormat,
-    mut said: Vec<String>,
-) -> Result<ExportedRobot> {
+fn convert_model(model: &Model, robot: &Robot, to: ModelFormat, mut said: Vec<String>) -> Result<ExportedRobot> {
     let plain = Model { robot: robot.clone(), ..model.clone() };
     let ConvertedModel { text, notes } = convert(&plain, to)?;
     said.extend(notes);

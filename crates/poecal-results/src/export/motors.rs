@@ -55,7 +55,8 @@ pub(crate) fn write_motors(model: &Model, robot: &Robot, motors: Option<&str>) -
     };
     if motors.is_none() {
         written.notes.push(
-            "the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned(),
+            "the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE"
+                .to_owned(),
         );
     }
     Ok(written)
@@ -79,11 +80,7 @@ fn motors_of(robot: &Robot, motors: Option<&str>) -> Result<Motors> {
 }
 
 /// The motor of a joint, by its name, the name of its column, or its number.
-fn motor_of<'m>(
-    motors: &'m mut Motors,
-    joint: &Joint,
-    column: Option<&str>,
-) -> Result<(String, &'m mut Motor)> {
+fn motor_of<'m>(motors: &'m mut Motors, joint: &Joint, column: Option<&str>) -> Result<(String, &'m mut Motor)> {
     let column = column.map(|it| it.strip_suffix(POSITION).unwrap_or(it));
     let by_number = || motors.iter().find(|(_, it)| joint.name.parse() == Ok(it.id)).map(|it| it.0.clone());
     let names = [Some(joint.name.as_str()), column].into_iter().flatten();
@@ -153,11 +150,7 @@ fn write_zeros(robot: &Robot, mut motors: Motors, controller: &Controller) -> Re
             turned.join(", ")
         ));
     }
-    Ok(ExportedText {
-        text: json_text(&motors, "calibration of motors")?,
-        notes,
-        proof: Proof::Remains(remains),
-    })
+    Ok(ExportedText { text: json_text(&motors, "calibration of motors")?, notes, proof: Proof::Remains(remains) })
 }
 
 /// Offsets that come nearest to the calibrated robot, with its nominal model.
@@ -186,11 +179,7 @@ fn write_offsets(model: &Model, robot: &Robot, mut motors: Motors) -> Result<Exp
         remaining_difference(robot, &alone).position_m * 1e3,
         remains.position_m * 1e3
     )];
-    Ok(ExportedText {
-        text: json_text(&motors, "calibration of motors")?,
-        notes,
-        proof: Proof::Remains(remains),
-    })
+    Ok(ExportedText { text: json_text(&motors, "calibration of motors")?, notes, proof: Proof::Remains(remains) })
 }
 
 /// Puts the middle of a motor's range to a position, in ticks, with the travel within that before; returns the shift in whole ticks.

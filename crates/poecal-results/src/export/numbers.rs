@@ -78,10 +78,7 @@ fn header(robot: &Robot) -> String {
 fn write_functions(counting: &ControllerMap, readings: &[usize]) -> String {
     let function = |name: &str, (from, to): (&str, &str), row: &dyn Fn(usize) -> String| {
         let lines = (0..readings.len()).map(|at| format!("  {to}[{at}] = {};\n", row(at)));
-        format!(
-            "static inline void {name}(const double *{from}, double *{to}) {{\n{}}}\n",
-            lines.collect::<String>()
-        )
+        format!("static inline void {name}(const double *{from}, double *{to}) {{\n{}}}\n", lines.collect::<String>())
     };
     let term = |factor: f64, of: String| match factor {
         0.0 => String::new(),
@@ -130,8 +127,7 @@ fn compare_array(robot: &Robot, factors: &[f64], text: &str, name: &str) -> Resu
     let numbers = body.unwrap_or_default().split(',').map(str::trim).filter(|it| !it.is_empty());
     let numbers: Option<Vec<f64>> = numbers.map(|it| it.parse().ok()).collect();
     let arm = numbers.and_then(|numbers| Arm::from_numbers(&numbers));
-    let arm =
-        arm.ok_or_else(|| unreadable_error("numbers that are no arm, since a reading moves nothing"))?;
+    let arm = arm.ok_or_else(|| unreadable_error("numbers that are no arm, since a reading moves nothing"))?;
     let (_, readings) = robot.arm_model(factors)?;
     let count = robot.joint_reading_names().len();
     let mut generator = ChaCha8Rng::seed_from_u64(1);

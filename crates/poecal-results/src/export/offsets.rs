@@ -51,8 +51,7 @@ struct TipErrorsEntry {
 pub(super) fn explain_offsets(model: &Model, robot: &Robot) -> Result<(Robot, OffsetExplanation)> {
     let ModelSource::Calibration(file) = &model.source else {
         return Err(export_error(
-            "found a model, expected the calibration.json of a robot that had other numbers before"
-                .to_owned(),
+            "found a model, expected the calibration.json of a robot that had other numbers before".to_owned(),
         ));
     };
     let mut nominal = file.nominal_robot()?.without_offsets().rigid();

@@ -95,11 +95,7 @@ fn refuse_other(nominal: &Robot, found: &Robot, urdf: &Path, has_frames: bool) -
     let where_ = moved.map_or_else(
         || "its tip".to_owned(),
         |(name, shift, turn)| {
-            format!(
-                "joint `{name}`, which is {:.3} mm and {:.4} deg from there",
-                shift * 1e3,
-                turn.to_degrees()
-            )
+            format!("joint `{name}`, which is {:.3} mm and {:.4} deg from there", shift * 1e3, turn.to_degrees())
         },
     );
     refuse(format!(

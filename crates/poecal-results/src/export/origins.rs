@@ -48,10 +48,7 @@ impl Flavour<'_> {
         if let Some(joint) = robot.joints.iter().find(|it| it.kind != JointKind::Revolute)
             && !matches!(self, Flavour::Names)
         {
-            return Err(export_error(format!(
-                "found joint `{}`, which slides, expected joints that turn",
-                joint.name
-            )));
+            return Err(export_error(format!("found joint `{}`, which slides, expected joints that turn", joint.name)));
         }
         match self {
             Flavour::Names => Ok(robot.joints.iter().map(|it| it.name.clone()).collect()),
@@ -59,9 +56,9 @@ impl Flavour<'_> {
                 expected(UR_LINKS.len(), "an arm of Universal Robots")?;
                 Ok(UR_LINKS.map(str::to_owned).to_vec())
             }
-            Flavour::Xarm if !(5..=7).contains(&count) => Err(export_error(format!(
-                "found {count} joints, expected the 5, 6 or 7 of an arm of uFactory"
-            ))),
+            Flavour::Xarm if !(5..=7).contains(&count) => {
+                Err(export_error(format!("found {count} joints, expected the 5, 6 or 7 of an arm of uFactory")))
+            }
             Flavour::Xarm => Ok(numbered(count)),
             Flavour::Franka => {
                 expected(7, "an arm of Franka")?;
@@ -161,11 +158,8 @@ fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Opti
         push_origin(&mut text, "  ", &quote_yaml(&origin.joint), numbers, false);
     }
     let keys: Vec<String> = origins.iter().map(|origin| origin.joint.clone()).collect();
-    let read = keys.iter().zip(read(&text, &keys)?).map(|(joint, (xyz, rpy))| UrdfOrigin {
-        joint: joint.clone(),
-        xyz,
-        rpy,
-    });
+    let read =
+        keys.iter().zip(read(&text, &keys)?).map(|(joint, (xyz, rpy))| UrdfOrigin { joint: joint.clone(), xyz, rpy });
     let mut again = document.with_origins(&read.collect::<Vec<_>>());
     let tool = again.home.inverse() * robot.home;
     let mut notes = Vec::new();
@@ -178,11 +172,7 @@ fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Opti
 }
 
 /// The origins of a URDF's joints after a calibration, in its order.
-pub(crate) fn corrected_origins(
-    document: &UrdfDocument,
-    robot: &Robot,
-    path: &Path,
-) -> Result<Vec<UrdfOrigin>> {
+pub(crate) fn corrected_origins(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Vec<UrdfOrigin>> {
     let patched = document.patch(robot)?;
     let after = UrdfDocument::parse(&patched.text, path, &patched.selection)?.origins();
     let of = |before: UrdfOrigin| after.iter().find(|it| it.joint == before.joint).cloned().unwrap_or(before);
@@ -258,8 +248,7 @@ fn is_none(tool: &Pose) -> bool {
 pub(crate) fn quote_yaml(text: &str) -> String {
     let is_plain = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         && text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && !["y", "n", "yes", "no", "on", "off", "true", "false", "null"]
-            .contains(&text.to_ascii_lowercase().as_str());
+        && !["y", "n", "yes", "no", "on", "off", "true", "false", "null"].contains(&text.to_ascii_lowercase().as_str());
     if is_plain {
         return text.to_owned();
     }
@@ -285,9 +274,7 @@ fn read(text: &str, keys: &[String]) -> Result<Vec<([f64; 3], [f64; 3])>> {
         let mut numbers = [0.0; 6];
         for (number, name) in numbers.iter_mut().zip(NUMBERS) {
             let found = values.iter().find(|value| value.keys.iter().eq(["origins", key, name]));
-            *number = found
-                .ok_or_else(|| unreadable_error(&format!("no number `{name}` of `{key}`")))?
-                .number(path)?;
+            *number = found.ok_or_else(|| unreadable_error(&format!("no number `{name}` of `{key}`")))?.number(path)?;
         }
         let [x, y, z, roll, pitch, yaw] = numbers;
         Ok(([x, y, z], [roll, pitch, yaw]))

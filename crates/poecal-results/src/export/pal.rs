@@ -32,16 +32,14 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<ExportedText> {
     for (origin, after) in before.iter().zip(&after) {
         for (end, difference) in PARTS.iter().zip(differences(origin, after)) {
             if difference.abs() > NONE {
-                let _ =
-                    writeln!(text, "    {}: {difference:?}", quote_yaml(&format!("{}{end}", origin.joint)));
+                let _ = writeln!(text, "    {}: {difference:?}", quote_yaml(&format!("{}{end}", origin.joint)));
             }
         }
     }
     let mut notes = Vec::new();
     let again = document.with_origins(&add_numbers(&before, &read(&text)?));
     let remains = remaining_difference(robot, &again);
-    let mut head =
-        "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
+    let mut head = "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
     if !is_same(robot, &remains) {
         let lost = format!(
             "origins alone cannot hold all of it (an axis was turned, or the tip has no fixed joint): the tip is off by up to {:.4} mm and {:.5} deg",
@@ -78,8 +76,7 @@ fn differences(before: &UrdfOrigin, after: &UrdfOrigin) -> [f64; 6] {
 /// Origins with the file's differences added.
 fn add_numbers(origins: &[UrdfOrigin], numbers: &BTreeMap<String, f64>) -> Vec<UrdfOrigin> {
     let of = |origin: &UrdfOrigin| {
-        let added: [f64; 6] =
-            PARTS.map(|end| numbers.get(&format!("{}{end}", origin.joint)).copied().unwrap_or(0.0));
+        let added: [f64; 6] = PARTS.map(|end| numbers.get(&format!("{}{end}", origin.joint)).copied().unwrap_or(0.0));
         UrdfOrigin {
             joint: origin.joint.clone(),
             xyz: std::array::from_fn(|k| origin.xyz[k] + added[k]),

@@ -33,8 +33,7 @@ pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
             JointKind::Revolute => "revolute",
             JointKind::Prismatic => "prismatic",
         };
-        let JointLimits { lower, upper } =
-            joint.limits.unwrap_or(JointLimits { lower: -UNLIMITED, upper: UNLIMITED });
+        let JointLimits { lower, upper } = joint.limits.unwrap_or(JointLimits { lower: -UNLIMITED, upper: UNLIMITED });
         let _ = writeln!(
             text,
             "    <joint name=\"{}\" type=\"{kind}\">\n      <parent>{}</parent>\n      <child>{}</child>\n      <axis>\n        <xyz>0 0 1</xyz>\n        \

@@ -40,8 +40,7 @@ fn on_tip(file: &CalibrationFile) -> Result<(Vec<String>, Vec<String>)> {
     let mut notes = Vec::new();
     let mut all = Vec::new();
     for (name, target) in file.targets.iter().filter(|(_, it)| it.on.is_none()) {
-        let frame =
-            NamedFrame { parent: file.robot.tip_link.clone(), child: name.clone(), pose: target.pose()? };
+        let frame = NamedFrame { parent: file.robot.tip_link.clone(), child: name.clone(), pose: target.pose()? };
         match target.measured_entry() {
             MeasuredEntry::Pose => all.push(frame.short_forms()),
             MeasuredEntry::Position => all.push(frame.position_forms()),
@@ -60,9 +59,8 @@ fn in_base(file: &CalibrationFile) -> Result<Vec<String>> {
     }
     let only = [StationEntry::instrument(None, file.measurement_frame.base_from_device)];
     let stations = if file.stations.is_empty() { &only[..] } else { &file.stations[..] };
-    let beside = stations
-        .iter()
-        .filter(|it| !it.instrument.as_ref().is_some_and(|name| file.instruments.contains_key(name)));
+    let beside =
+        stations.iter().filter(|it| !it.instrument.as_ref().is_some_and(|name| file.instruments.contains_key(name)));
     let mut all = Vec::new();
     for station in beside {
         let kind = Device::ALL.into_iter().find(|it| Some(it.word()) == station.kind.as_deref());
@@ -81,12 +79,8 @@ fn in_base(file: &CalibrationFile) -> Result<Vec<String>> {
 /// The name of the only device: for pictures that of the camera, or of the board if the camera is on the arm.
 fn device_name(file: &CalibrationFile) -> String {
     let Some(pictures) = &file.pictures else { return DEVICE.to_owned() };
-    let mut names =
-        pictures.cameras.iter().map(|it| &it.name).chain(pictures.boards.iter().map(|it| &it.name));
-    names
-        .find(|name| !name.is_empty() && !file.targets.contains_key(*name))
-        .map_or(DEVICE, |it| it)
-        .to_owned()
+    let mut names = pictures.cameras.iter().map(|it| &it.name).chain(pictures.boards.iter().map(|it| &it.name));
+    names.find(|name| !name.is_empty() && !file.targets.contains_key(*name)).map_or(DEVICE, |it| it).to_owned()
 }
 
 /// Names of targets on links other than the tip's.

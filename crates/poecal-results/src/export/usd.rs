@@ -37,22 +37,10 @@ pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
         push_joint(&mut text, (schema, &format!("joint{}", at + 1)), (&before, &link), frame);
         text.push_str("        uniform token physics:axis = \"Z\"\n");
         if let Some(limits) = joint.limits {
-            let _ = writeln!(
-                text,
-                "        float physics:lowerLimit = {}",
-                format_shortest(limits.lower * scale)
-            );
-            let _ = writeln!(
-                text,
-                "        float physics:upperLimit = {}",
-                format_shortest(limits.upper * scale)
-            );
+            let _ = writeln!(text, "        float physics:lowerLimit = {}", format_shortest(limits.lower * scale));
+            let _ = writeln!(text, "        float physics:upperLimit = {}", format_shortest(limits.upper * scale));
         }
-        let _ = writeln!(
-            text,
-            "        custom string poecal:joint = {}",
-            serde_json::Value::from(joint.name.as_str())
-        );
+        let _ = writeln!(text, "        custom string poecal:joint = {}", serde_json::Value::from(joint.name.as_str()));
         text.push_str("    }\n");
         before = link;
     }
@@ -73,11 +61,7 @@ pub(crate) fn write(robot: &Robot) -> Result<ExportedText> {
     } else {
         "masses of links are those of the model, moments of inertia are left to the simulator"
     };
-    Ok(ExportedText {
-        text: head + &text,
-        notes: vec![words, masses.to_owned()],
-        proof: Proof::Remains(remains),
-    })
+    Ok(ExportedText { text: head + &text, notes: vec![words, masses.to_owned()], proof: Proof::Remains(remains) })
 }
 
 /// The mass of a link, kg, and its centre in the base at zero; `None` if the model states none.
@@ -134,7 +118,6 @@ fn read(text: &str, count: usize) -> Result<AxisFrames> {
         };
         poses.push(Pose::from_position_quaternion([*x, *y, *z], [*qx, *qy, *qz, *w]));
     }
-    let last_from_tip =
-        poses.pop().filter(|_| poses.len() == count).ok_or_else(|| unreadable_error("no frame"))?;
+    let last_from_tip = poses.pop().filter(|_| poses.len() == count).ok_or_else(|| unreadable_error("no frame"))?;
     Ok(AxisFrames { joints: poses, last_from_tip })
 }

@@ -78,11 +78,8 @@ pub fn list_files(station: &Station) -> Result<(Vec<InboxFile>, Vec<SkippedEntry
     let root: PathBuf = parts[..plain].iter().collect();
     let root = if root.as_os_str().is_empty() { PathBuf::from(".") } else { root };
     let (mut found, mut left) = (Vec::new(), Vec::new());
-    let none =
-        InboxFile { serial: String::new(), date: String::new(), of_type: String::new(), path: root.clone() };
-    let cannot = |error: io::Error| {
-        ErrorKind::File.error(format!("the inbox cannot be read ({error})")).in_file(&root)
-    };
+    let none = InboxFile { serial: String::new(), date: String::new(), of_type: String::new(), path: root.clone() };
+    let cannot = |error: io::Error| ErrorKind::File.error(format!("the inbox cannot be read ({error})")).in_file(&root);
     walk(&none, (&root, &parts[plain..]), &mut found, &mut left).map_err(cannot)?;
     found.sort();
     left.sort();

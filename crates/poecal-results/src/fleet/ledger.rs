@@ -87,15 +87,13 @@ impl Ledger {
     /// [`ErrorKind::File`] if it cannot be written; [`ErrorKind::Export`] if a number is not finite.
     pub fn append(&mut self, row: LedgerRow) -> Result<()> {
         let row = LedgerRow { schema: SCHEMA.to_owned(), ..row };
-        let text = serde_json::to_string(&row).map_err(|error| {
-            ErrorKind::Export.error(format!("the row of the ledger cannot be written: {error}"))
-        })?;
+        let text = serde_json::to_string(&row)
+            .map_err(|error| ErrorKind::Export.error(format!("the row of the ledger cannot be written: {error}")))?;
         let written = disk::current_disk().append(&self.path).and_then(|mut out| {
             out.write_all(format!("{text}\n").as_bytes())?;
             out.sync()
         });
-        written
-            .map_err(|error| ledger_error(&self.path, format!("the ledger cannot be written ({error})")))?;
+        written.map_err(|error| ledger_error(&self.path, format!("the ledger cannot be written ({error})")))?;
         self.add(row);
         Ok(())
     }
@@ -109,10 +107,7 @@ pub fn read_ledgers(paths: &[PathBuf]) -> Result<Vec<LedgerRow>> {
     let mut all: Vec<LedgerRow> = Vec::new();
     for path in paths {
         let Some(text) = bytes(path)? else {
-            return Err(ledger_error(
-                path,
-                "found no file, expected a ledger as `poecal fleet` writes it".to_owned(),
-            ));
+            return Err(ledger_error(path, "found no file, expected a ledger as `poecal fleet` writes it".to_owned()));
         };
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         all.extend(rows(&text[..whole], path)?);
@@ -152,15 +147,12 @@ fn rows(text: &[u8], path: &Path) -> Result<Vec<LedgerRow>> {
         let refuse = |message: String| Err(ErrorKind::Syntax.error(message).at_line(path, at + 1));
         let schema = schema_of(line);
         match schema.as_deref() {
-            Some(SCHEMA) => serde_json::from_slice(line).or_else(|error| {
-                refuse(format!("found a row that is none ({error}), expected one of {SCHEMA}"))
-            }),
+            Some(SCHEMA) => serde_json::from_slice(line)
+                .or_else(|error| refuse(format!("found a row that is none ({error}), expected one of {SCHEMA}"))),
             Some(other) if other.starts_with(FAMILY) => {
                 refuse(format!("found a row of {other}, expected {SCHEMA}: a newer poecal wrote it"))
             }
-            _ => refuse(format!(
-                "found a line that is no row of a ledger, expected {SCHEMA}: name another file"
-            )),
+            _ => refuse(format!("found a line that is no row of a ledger, expected {SCHEMA}: name another file")),
         }
     };
     lines.map(row).collect()

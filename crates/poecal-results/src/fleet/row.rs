@@ -190,8 +190,7 @@ impl LedgerRow {
         let reason = verdict.filter(|_| !is_good).and_then(|it| it.reasons.first().cloned());
         let limits = failed.map(|_| "a limit of `accept` is not shown to be kept".to_owned());
         let sizes = file.corrected.iter().flat_map(|it| &it.sizes);
-        let size =
-            |(group, size): (&String, &f64)| SizeRow { group: group.clone(), size: format_figure(*size) };
+        let size = |(group, size): (&String, &f64)| SizeRow { group: group.clone(), size: format_figure(*size) };
         let sigma = file.noise.sigma.iter().next().map(|(_, sigma)| sigma);
         LedgerRow {
             verdict: verdict.and_then(|it| word(it.level)),

@@ -44,8 +44,7 @@ impl StationFile {
                 );
                 return refuse(of.span().start, message);
             }
-            let known =
-                ["{serial}", "{date}", "{type}"].iter().fold(named.clone(), |rest, it| rest.replace(it, ""));
+            let known = ["{serial}", "{date}", "{type}"].iter().fold(named.clone(), |rest, it| rest.replace(it, ""));
             if known.contains(['{', '}']) {
                 return refuse(
                     of.span().start,
@@ -67,8 +66,7 @@ impl StationFile {
     fn check_models(&self, models: &BTreeMap<String, PathBuf>, refuse: OffsetRefusal<'_>) -> Result<()> {
         let has_types = self.inbox.get_ref().contains("{type}");
         if models.is_empty() || (!has_types && !models.contains_key("")) {
-            let expected =
-                if has_types { "`model`, or a table `models` with one for each {type}" } else { "`model`" };
+            let expected = if has_types { "`model`, or a table `models` with one for each {type}" } else { "`model`" };
             return refuse(0, format!("found no model, expected {expected}"));
         }
         Ok(())
@@ -145,13 +143,9 @@ impl Station {
     /// # Errors
     /// [`ErrorKind::File`] if it cannot be read; [`ErrorKind::Syntax`], with line and column, if it is no station.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = source_text::read_up_to(
-            path,
-            "a station (TOML: inbox, results and model)",
-            ResourceLimit::Settings,
-        )?;
-        let refused =
-            |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, &text, offset);
+        let text =
+            source_text::read_up_to(path, "a station (TOML: inbox, results and model)", ResourceLimit::Settings)?;
+        let refused = |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, &text, offset);
         let refuse = |offset: usize, message: String| Err(refused(offset, message));
         let file: StationFile = match toml::from_str(&text) {
             Ok(file) => file,

@@ -221,9 +221,7 @@ impl TestResult {
         found.refuse_other_commands(earlier)?;
         let before: Vec<FigureEntry> = earlier.figures.iter().map(FigureEntry::new).collect();
         for own in &mut self.figures {
-            let same = before
-                .iter()
-                .find(|it| it.figure == own.figure && it.pose == own.pose && it.unit == own.unit);
+            let same = before.iter().find(|it| it.figure == own.figure && it.pose == own.pose && it.unit == own.unit);
             own.before = same.map(|it| it.measured);
             own.corrected = same.and_then(|it| it.corrected);
         }

@@ -123,8 +123,7 @@ impl TestFile {
     pub(super) fn completed(&self, record: Record) -> Result<Record> {
         let Some(TestRow { labels, place, .. }) = self.rows.first() else { return Ok(record) };
         let mut record = record;
-        let pairs =
-            [("speed", &labels.speed, &mut record.speed), ("payload", &labels.payload, &mut record.payload)];
+        let pairs = [("speed", &labels.speed, &mut record.speed), ("payload", &labels.payload, &mut record.payload)];
         for (key, own, stated) in pairs {
             match stated {
                 _ if own.is_empty() => {}
@@ -171,8 +170,7 @@ fn nominal_model(model: &Model) -> Result<Model> {
 fn gantry(paths: &[PathBuf], options: &TestOptions, is_needed: bool) -> Result<Robot> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let slides = COMMANDED.iter().zip(axes);
-    let mut joints: Vec<Joint> =
-        slides.map(|(name, axis)| Joint::prismatic(name, Screw::prismatic(&axis))).collect();
+    let mut joints: Vec<Joint> = slides.map(|(name, axis)| Joint::prismatic(name, Screw::prismatic(&axis))).collect();
     let of_positions = Robot::new("commanded", joints.clone(), Pose::identity())?;
     let Some(path) = paths.first().filter(|_| is_needed) else { return Ok(of_positions) };
     let names: Vec<&str> = COMMANDED.into_iter().chain(TURNED).collect();
@@ -185,9 +183,7 @@ fn gantry(paths: &[PathBuf], options: &TestOptions, is_needed: bool) -> Result<R
     }
     if found.has.iter().skip(3).any(|has| *has) {
         let turns = TURNED.iter().zip(axes.into_iter().rev());
-        joints.extend(
-            turns.map(|(name, axis)| Joint::revolute(name, Screw::revolute(&axis, &Vector3::zeros()))),
-        );
+        joints.extend(turns.map(|(name, axis)| Joint::revolute(name, Screw::revolute(&axis, &Vector3::zeros()))));
         return Robot::new("commanded", joints, Pose::identity());
     }
     Ok(of_positions)
@@ -232,9 +228,8 @@ fn target_of(model: Option<&Model>, data: &Dataset) -> Option<String> {
     let model = model?;
     let named = data.targets.first().cloned().flatten();
     let robot = &model.robot;
-    let knows = |name: &String| {
-        robot.targets.iter().any(|it| it.0 == *name) || robot.mounted.iter().any(|it| it.name == *name)
-    };
+    let knows =
+        |name: &String| robot.targets.iter().any(|it| it.0 == *name) || robot.mounted.iter().any(|it| it.name == *name);
     if let Some(name) = named {
         return Some(name).filter(knows);
     }
@@ -291,8 +286,7 @@ impl RowLabels {
 
 /// Files of which the calibration was made, whose rows it predicts better than others.
 fn find_fitted_files(file: &CalibrationFile, read: &MeasurementFile) -> Option<String> {
-    let sums: Vec<&String> =
-        file.inputs.measurements.iter().filter_map(|name| file.inputs.sha256.get(name)).collect();
+    let sums: Vec<&String> = file.inputs.measurements.iter().filter_map(|name| file.inputs.sha256.get(name)).collect();
     let (name, _) = read.sha256.iter().find(|(_, sum)| sums.contains(sum))?;
     Some(format!(
         "{name}: the calibration was made of this file, so the accuracy of corrected commands is better here than elsewhere: predict it from other rows"
@@ -300,20 +294,12 @@ fn find_fitted_files(file: &CalibrationFile, read: &MeasurementFile) -> Option<S
 }
 
 /// Doubts about accuracy, a sentence each; takes orientations away whose target is not known.
-fn doubts(
-    model: Option<&Model>,
-    rows: &mut [TestRow],
-    target: Option<&str>,
-    frame: TestFrame,
-) -> Vec<String> {
+fn doubts(model: Option<&Model>, rows: &mut [TestRow], target: Option<&str>, frame: TestFrame) -> Vec<String> {
     let mut said = Vec::new();
     let Some(model) = model else { return said };
     let first = rows.first().map(|it| it.commanded);
-    let turn_rad = rows
-        .iter()
-        .zip(first)
-        .map(|(row, first)| row.commanded.distance_and_angle(&first).1)
-        .fold(0.0, f64::max);
+    let turn_rad =
+        rows.iter().zip(first).map(|(row, first)| row.commanded.distance_and_angle(&first).1).fold(0.0, f64::max);
     if target.is_none() && turn_rad > SAME_RAD && calibration(model).is_none() {
         said.push(format!(
             "found commanded orientations that differ by up to {:.1} deg and a target whose place on the flange is not known, expected it in the model: \

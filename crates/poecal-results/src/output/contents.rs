@@ -3,8 +3,7 @@
 /// Name of the report among the results.
 pub const REPORT: &str = "report.html";
 /// File names of a calibration.
-const CALIBRATION: [&str; 5] =
-    ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
+const CALIBRATION: [&str; 5] = ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
 /// File names of a check.
 const VALIDATION: [&str; 3] = ["validation.json", "errors.csv", REPORT];
 /// File names of a simulated session.
@@ -77,11 +76,9 @@ impl Contents {
         match self {
             Contents::Calibration => Some(VALIDATION[0]),
             Contents::Validation => Some(CALIBRATION[0]),
-            Contents::Simulation
-            | Contents::Reproduction
-            | Contents::HandEye
-            | Contents::Tip
-            | Contents::Project => None,
+            Contents::Simulation | Contents::Reproduction | Contents::HandEye | Contents::Tip | Contents::Project => {
+                None
+            }
         }
     }
 

@@ -66,10 +66,7 @@ impl ReservedFolder {
     fn sync_names(&self, folder: Option<&Path>) -> Vec<String> {
         let synced = folder.map_or(Ok(()), |folder| self.staging.disk.sync_folder(folder));
         let note = |error| {
-            format!(
-                "{}: the results are in place, but may not last if power fails now ({error})",
-                self.named.display()
-            )
+            format!("{}: the results are in place, but may not last if power fails now ({error})", self.named.display())
         };
         synced.err().map(note).into_iter().collect()
     }
@@ -81,8 +78,7 @@ impl ReservedFolder {
                            another with --out, or overwrite its results with --force";
             return Err(path_error(&self.named, message));
         }
-        let inside =
-            Staging::make(&self.staging.disk, &self.folder, &staging::prefix(None)).map_err(&failed)?;
+        let inside = Staging::make(&self.staging.disk, &self.folder, &staging::prefix(None)).map_err(&failed)?;
         let disk = &inside.disk;
         let moved = disk
             .remove_folder(&inside.new_files())
@@ -209,12 +205,7 @@ fn lock(disk: &dyn Disk, folder: &Path) -> io::Result<Lock> {
 }
 
 /// Keeps the files to be replaced.
-fn keep_old(
-    disk: &dyn Disk,
-    staging: &Staging,
-    folder: &Path,
-    replaced: &BTreeSet<String>,
-) -> io::Result<()> {
+fn keep_old(disk: &dyn Disk, staging: &Staging, folder: &Path, replaced: &BTreeSet<String>) -> io::Result<()> {
     let old = staging.old_files();
     disk.create_folder(&old)?;
     replaced.iter().try_for_each(|name| staging::keep(disk, &folder.join(name), &old.join(name)))?;

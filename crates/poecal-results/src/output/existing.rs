@@ -40,8 +40,7 @@ pub(crate) fn path_error(path: &Path, message: impl Into<String>) -> Error {
 /// The object at a path, if there is one.
 pub(crate) fn find_object(disk: &dyn Disk, path: &Path) -> Result<Option<DiskObject>> {
     staging::find_object(disk, path).map_err(|error| {
-        let message =
-            format!("the place cannot be looked at ({error}), expected one to write to: choose another");
+        let message = format!("the place cannot be looked at ({error}), expected one to write to: choose another");
         path_error(path, message)
     })
 }
@@ -70,7 +69,12 @@ pub(crate) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBu
 pub(crate) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, DiskObject)> {
     let actual = disk.canonical_path(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
     actual.map_err(|error| {
-        path_error(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
+        path_error(
+            path,
+            format!(
+                "found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"
+            ),
+        )
     })
 }
 
@@ -91,9 +95,6 @@ pub(crate) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Re
 pub(crate) fn is_of_poecal(disk: &dyn Disk, path: &Path, mark: &str) -> bool {
     let mut head = Vec::new();
     let is_file = disk.look(path).is_ok_and(|found| found.kind == ObjectKind::File);
-    let read =
-        |file: Box<dyn io::Read + Send>| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head);
-    is_file
-        && disk.open(path).and_then(read).is_ok()
-        && head.windows(mark.len()).any(|part| part == mark.as_bytes())
+    let read = |file: Box<dyn io::Read + Send>| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head);
+    is_file && disk.open(path).and_then(read).is_ok() && head.windows(mark.len()).any(|part| part == mark.as_bytes())
 }

@@ -21,8 +21,7 @@ fn is_stream(path: &Path) -> bool {
         let number = path.strip_prefix("/dev/fd/").or_else(|| path.strip_prefix("/proc/self/fd/"))?;
         Some(!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
     };
-    path.to_str()
-        .is_some_and(|path| ["/dev/stdout", "/dev/stderr"].contains(&path) || number(path).unwrap_or(false))
+    path.to_str().is_some_and(|path| ["/dev/stdout", "/dev/stderr"].contains(&path) || number(path).unwrap_or(false))
 }
 
 /// A reserved place for a file. Nothing has changed yet.
@@ -91,8 +90,7 @@ impl ReservedFile {
             }
         }
         let prefix = staging::prefix(place.file_name());
-        let staging =
-            Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable_error(path, &error))?;
+        let staging = Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable_error(path, &error))?;
         Ok(ReservedFile { named, way: WriteMethod::Staged { path: place, existing, replaces, staging } })
     }
 
@@ -111,10 +109,7 @@ impl ReservedFile {
     /// # Errors
     /// Those of `make`, and [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if the file cannot be written; then nothing has changed,
     /// except for the pieces that a stream has received.
-    pub fn write_by<T>(
-        self,
-        make: impl FnOnce(&mut dyn FnMut(&str) -> Result<()>) -> Result<T>,
-    ) -> Result<T> {
+    pub fn write_by<T>(self, make: impl FnOnce(&mut dyn FnMut(&str) -> Result<()>) -> Result<T>) -> Result<T> {
         self.write_pieces(|out| make(&mut |piece| out(piece.as_bytes())))
     }
 
@@ -126,10 +121,7 @@ impl ReservedFile {
         self.write_pieces(|out| out(bytes))
     }
 
-    fn write_pieces<T>(
-        mut self,
-        make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<()>) -> Result<T>,
-    ) -> Result<T> {
+    fn write_pieces<T>(mut self, make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<()>) -> Result<T>) -> Result<T> {
         let named = self.named.clone();
         let failed = |error: &io::Error| unwritable_error(&named, error);
         let made = match &mut self.way {
@@ -187,8 +179,7 @@ impl ReservedFile {
         let moved = if replaces {
             // A file whose owner and permissions cannot be kept gets the default ones.
             let _ = disk.copy_access(&path, &new);
-            let kept =
-                disk.create_folder(&old).and_then(|()| staging::keep(disk.as_ref(), &path, &old.join(NAME)));
+            let kept = disk.create_folder(&old).and_then(|()| staging::keep(disk.as_ref(), &path, &old.join(NAME)));
             kept.and_then(|()| disk.rename(&new, &path))
         } else {
             disk.rename_new(&new, &path)
@@ -209,11 +200,8 @@ impl ReplacedFile {
     pub(crate) fn take_back(self, error: Error) -> Error {
         let Some((path, replaces, staging)) = self.0 else { return error };
         let disk = staging.disk.as_ref();
-        let taken = if replaces {
-            disk.rename(&staging.old_files().join(NAME), &path)
-        } else {
-            disk.remove_file(&path)
-        };
+        let taken =
+            if replaces { disk.rename(&staging.old_files().join(NAME), &path) } else { disk.remove_file(&path) };
         match taken {
             Ok(()) => error,
             Err(cause) => error.with_more(&format!(
@@ -235,8 +223,7 @@ impl ReplacedFile {
 }
 
 /// Message for a file that must not be replaced.
-const IN_THE_WAY: &str =
-    "found this file, expected none: choose another, or write over this one with --force";
+const IN_THE_WAY: &str = "found this file, expected none: choose another, or write over this one with --force";
 
 /// True if a file may be replaced.
 fn may_go(disk: &dyn Disk, path: &Path, existing: ExistingFiles) -> bool {
@@ -248,8 +235,7 @@ fn may_go(disk: &dyn Disk, path: &Path, existing: ExistingFiles) -> bool {
 }
 
 fn unwritable_error(path: &Path, error: &io::Error) -> Error {
-    let message = format!(
-        "the file cannot be written ({error}), expected a folder that can be written to: choose another"
-    );
+    let message =
+        format!("the file cannot be written ({error}), expected a folder that can be written to: choose another");
     path_error(path, message)
 }

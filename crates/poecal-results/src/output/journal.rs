@@ -104,13 +104,7 @@ impl Journal {
 
     /// Executes the remaining steps in a folder. A place that someone has changed since the journal was written is an error, or, on a
     /// repeated (`again`) execution, left as it is.
-    pub(crate) fn carry_out(
-        &self,
-        disk: &dyn Disk,
-        staging: &Path,
-        folder: &Path,
-        again: bool,
-    ) -> io::Result<()> {
+    pub(crate) fn carry_out(&self, disk: &dyn Disk, staging: &Path, folder: &Path, again: bool) -> io::Result<()> {
         for (step, name) in &self.0 {
             let (new, old) = (staging.join(NEW).join(name), staging.join(OLD).join(name));
             let place = folder.join(name);
@@ -127,14 +121,8 @@ impl Journal {
                 JournalStep::Add if is_file(disk, &new)? => disk.rename_new(&new, &place)?,
                 JournalStep::Back if is_file(disk, &old)? => disk.rename(&old, &place)?,
                 JournalStep::Remove if is_file(disk, &place)? => disk.remove_file(&place)?,
-                JournalStep::Take if !is_file(disk, &new)? && is_file(disk, &place)? => {
-                    disk.remove_file(&place)?
-                }
-                JournalStep::Put
-                | JournalStep::Add
-                | JournalStep::Back
-                | JournalStep::Remove
-                | JournalStep::Take => {}
+                JournalStep::Take if !is_file(disk, &new)? && is_file(disk, &place)? => disk.remove_file(&place)?,
+                JournalStep::Put | JournalStep::Add | JournalStep::Back | JournalStep::Remove | JournalStep::Take => {}
             }
         }
         Ok(())
@@ -196,9 +184,7 @@ mod tests {
         for cut in 1..text.len() {
             assert_eq!(Journal::parse(&text[..cut]), None, "{cut}");
         }
-        for hostile in
-            ["../a", "/etc/passwd", "a/b", "..", ".", "", "thesis.tex", ".bashrc", "figure-../../a.svg"]
-        {
+        for hostile in ["../a", "/etc/passwd", "a/b", "..", ".", "", "thesis.tex", ".bashrc", "figure-../../a.svg"] {
             assert_eq!(Journal::parse(&format!("{HEAD}\nput {hostile}\n{END}\n")), None, "{hostile}");
         }
     }

@@ -48,10 +48,7 @@ fn find_leftovers(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> Vec<(PathBu
 fn describe_leftover(staging: &Path, place: &Path, settled: io::Result<bool>) -> String {
     match settled {
         Ok(true) => {
-            format!(
-                "{}: an interrupted run had not put all of its files in place: completed",
-                place.display()
-            )
+            format!("{}: an interrupted run had not put all of its files in place: completed", place.display())
         }
         Ok(false) => format!("{}: removed what an interrupted run left", staging.display()),
         Err(error) => {

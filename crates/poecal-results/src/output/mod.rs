@@ -155,12 +155,7 @@ fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Differ
 
 /// A robot in the form of `model`: the same URDF text with other values, or a TOML model and a new URDF. Additions and omissions are
 /// appended to `notes`.
-fn robot_files<'a>(
-    stem: &str,
-    model: &Model,
-    robot: &'a Robot,
-    notes: &mut Vec<String>,
-) -> Result<Vec<NewFile<'a>>> {
+fn robot_files<'a>(stem: &str, model: &Model, robot: &'a Robot, notes: &mut Vec<String>) -> Result<Vec<NewFile<'a>>> {
     let urdf = format!("{stem}.urdf");
     let plain = urdf::holdable(robot, notes);
     let (text, selection) = model.urdf_of(&plain, notes)?;

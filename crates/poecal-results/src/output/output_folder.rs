@@ -5,9 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::contents::{self, Contents, REPORT};
-use super::existing::{
-    ExistingFiles, find_object, is_of_poecal, led_to, new_place, path_error, refuse_input,
-};
+use super::existing::{ExistingFiles, find_object, is_of_poecal, led_to, new_place, path_error, refuse_input};
 use super::staging::{self, Staging};
 use super::{ReservedFile, leftovers};
 use poecal_numerics::error::{Error, Result};
@@ -66,8 +64,7 @@ impl ReservedFolder {
             }
             Some(_) => {
                 let what = if contents == Contents::Project { "project" } else { "results" };
-                let message =
-                    format!("found a file, expected a folder for the {what}: choose another with --out");
+                let message = format!("found a file, expected a folder for the {what}: choose another with --out");
                 return Err(path_error(folder, message));
             }
         };
@@ -141,9 +138,8 @@ pub fn free_folder(name: &Path) -> PathBuf {
 }
 
 pub(crate) fn unwritable_error(folder: &Path, error: &io::Error) -> Error {
-    let message = format!(
-        "the folder cannot be written to ({error}), expected one that can: choose another with --out"
-    );
+    let message =
+        format!("the folder cannot be written to ({error}), expected one that can: choose another with --out");
     path_error(folder, message)
 }
 
@@ -219,9 +215,8 @@ pub(crate) fn check_own(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Resul
         Some(ObjectKind::Link) => "a link",
         Some(ObjectKind::Other) => "a device or a pipe",
     };
-    let message = format!(
-        "found {what}, expected a file or nothing: move it away, or choose another folder with --out"
-    );
+    let message =
+        format!("found {what}, expected a file or nothing: move it away, or choose another folder with --out");
     Err(path_error(path, message))
 }
 

@@ -55,9 +55,7 @@ impl Project<'_> {
         // Copied with its comments, not written from the parsed model.
         let model = match &self.model.source {
             ModelSource::Urdf(document) => document.text().to_owned(),
-            ModelSource::Toml | ModelSource::Calibration(_) => {
-                source_text::read(&self.model.path, "a robot model")?
-            }
+            ModelSource::Toml | ModelSource::Calibration(_) => source_text::read(&self.model.path, "a robot model")?,
         };
         Ok(vec![
             NewFile::new(self.model_name(), model),
@@ -97,9 +95,8 @@ impl Project<'_> {
         let links = [("base_link", &self.chain.base_link), ("tip_link", &self.chain.tip_link)];
         let links = || links.into_iter().filter_map(|(key, link)| Some((key, link.as_ref()?)));
         let line = |(key, link): (&str, &String)| format!("{key} = {}\n", toml::Value::String(link.clone()));
-        let option = |key: &str, value: &str| {
-            format!(" --{} '{}'", key.replace('_', "-"), value.replace('\'', "'\\''"))
-        };
+        let option =
+            |key: &str, value: &str| format!(" --{} '{}'", key.replace('_', "-"), value.replace('\'', "'\\''"));
         let words = |(key, link): (&str, &String)| option(key, link);
         let named = [("instrument", &self.chain.instruments), ("target", &self.chain.targets)];
         let pairs = |mounts: &[(String, String)]| -> Vec<String> {
@@ -109,20 +106,16 @@ impl Project<'_> {
             let values = pairs(mounts).into_iter().map(toml::Value::String).collect();
             format!("{key} = {}\n", toml::Value::Array(values))
         });
-        let typed = named
-            .iter()
-            .flat_map(|(key, mounts)| pairs(mounts).into_iter().map(move |pair| option(key, &pair)));
+        let typed =
+            named.iter().flat_map(|(key, mounts)| pairs(mounts).into_iter().map(move |pair| option(key, &pair)));
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
         let session = self.kind.session();
         let touching = match session.function.device {
             Device::Socket => KNOWN_DISTANCE,
             Device::Plane if session.columns.contains(&"contact") => CONTACT,
-            Device::Instrument
-            | Device::Anchor
-            | Device::Plane
-            | Device::Sphere
-            | Device::Direction
-            | Device::Pair => "",
+            Device::Instrument | Device::Anchor | Device::Plane | Device::Sphere | Device::Direction | Device::Pair => {
+                ""
+            }
         };
         let name = escape_invisible(&self.model.robot.name).into_owned();
         let replaced = [
@@ -149,10 +142,10 @@ touches. When a dozen rows are in `measurements.csv`, ask which unknowns they de
 poecal plan {model} --rows measurements.csv --kind {kind}{chain options}\n   ```";
 
 const KNOWN_DISTANCE: &str = "# The known distance of the two sockets of each place; without it the size of the robot is not determined.\n#socket_distance = \"50mm\"\n\n";
-const CONTACT: &str = "# Kind of contact for rows whose `contact` cell is empty: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";
+const CONTACT: &str =
+    "# Kind of contact for rows whose `contact` cell is empty: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";
 
-const ROTATION_NOISE: &str =
-    "# And of the measured rotation about each axis.\n#sigma_rotation = \"0.01deg\"\n\n";
+const ROTATION_NOISE: &str = "# And of the measured rotation about each axis.\n#sigma_rotation = \"0.01deg\"\n\n";
 
 /// Writes a project folder: the model, an empty measurement file with this robot's columns, configurations to measure, settings for `poecal
 /// calibrate`, and instructions. The folder may exist; files in it are never replaced.

@@ -75,11 +75,8 @@ impl TruthFile {
         let SimulatedSession { simulation, made, .. } = session;
         let all: Vec<usize> = (0..made.nominal.joints.len()).collect();
         let gives = made.actual.joints.len() > made.nominal.joints.len();
-        let nominal = if gives {
-            made.nominal.with_compliance(&all, simulation.terms.gives()).0
-        } else {
-            made.nominal.clone()
-        };
+        let nominal =
+            if gives { made.nominal.with_compliance(&all, simulation.terms.gives()).0 } else { made.nominal.clone() };
         TruthFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -114,11 +111,7 @@ impl TruthFile {
 /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written;
 /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a model read back differs by more than 1e-9 m or rad.
 /// Nothing is left behind then.
-pub fn write_simulation(
-    place: ReservedFolder,
-    model: &Model,
-    session: &SimulatedSession,
-) -> Result<WrittenFiles> {
+pub fn write_simulation(place: ReservedFolder, model: &Model, session: &SimulatedSession) -> Result<WrittenFiles> {
     let SimulatedSession { simulation, made, command, .. } = session;
     let noise = Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad);
     let exact = Noise::new(0.0, 0.0);

@@ -92,13 +92,8 @@ impl Staging {
                     return Err(error);
                 }
             };
-            let mut staging = Staging {
-                disk: Arc::clone(disk),
-                folder,
-                _lock: lock,
-                unsynced: Vec::new(),
-                abandoned: false,
-            };
+            let mut staging =
+                Staging { disk: Arc::clone(disk), folder, _lock: lock, unsynced: Vec::new(), abandoned: false };
             match staging.disk.create_folder(&staging.new_files()) {
                 // Another run has already removed it as a remainder.
                 Err(error) if error.kind() == io::ErrorKind::NotFound => staging.abandoned = true,
@@ -223,16 +218,13 @@ pub(crate) fn names(disk: &dyn Disk, folder: &Path) -> io::Result<Vec<OsString>>
 /// True if a name is that of a staging folder with this prefix.
 pub(crate) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
     let rest = name.as_encoded_bytes().strip_prefix(prefix.as_encoded_bytes());
-    rest.is_some_and(|rest| {
-        !rest.is_empty() && rest.iter().all(|byte| byte.is_ascii_digit() || *byte == b'-')
-    })
+    rest.is_some_and(|rest| !rest.is_empty() && rest.iter().all(|byte| byte.is_ascii_digit() || *byte == b'-'))
 }
 
 /// True if a staging folder and its contents are as expected and this user's: others with access to the parent folder could have put links there.
 fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
     let is = |path: &Path, kind: ObjectKind| {
-        find_object(disk, path)
-            .is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
+        find_object(disk, path).is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
     };
     is(folder, ObjectKind::Folder)
         && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), ObjectKind::Folder))
@@ -240,11 +232,7 @@ fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
 }
 
 /// Unlocked staging folders in a folder, each with its lock, which this run then holds.
-pub(crate) fn find_leftovers(
-    disk: &dyn Disk,
-    parent: &Path,
-    prefix: &OsStr,
-) -> io::Result<Vec<(PathBuf, Lock)>> {
+pub(crate) fn find_leftovers(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> io::Result<Vec<(PathBuf, Lock)>> {
     let mut left = Vec::new();
     for name in names(disk, parent)? {
         let folder = parent.join(&name);

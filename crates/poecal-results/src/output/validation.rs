@@ -30,8 +30,7 @@ impl ValidationOutputs {
         inputs: &[&Path],
         say: &mut dyn FnMut(String),
     ) -> Result<Self> {
-        let folder =
-            folder.map(|path| ReservedFolder::reserve(path, Contents::Validation, existing, inputs, say));
+        let folder = folder.map(|path| ReservedFolder::reserve(path, Contents::Validation, existing, inputs, say));
         let folder = folder.transpose()?;
         let place = match (elsewhere, &folder) {
             (Some(path), Some(folder)) => folder.reserve_report(path, inputs, say)?,

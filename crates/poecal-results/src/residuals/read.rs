@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::rows::{
-    CornerErrors, DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals,
-    RowDiagnostics, columns, corner_columns,
+    CornerErrors, DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns,
+    corner_columns,
 };
 use poecal_import::{Cell, Separator, split};
 use poecal_model::measurement::{ByQuantity, MeasuredQuantities, Quantity};
@@ -51,9 +51,7 @@ impl Residuals {
                 })
             });
             is_head = false;
-            done.map_err(|(offset, message)| {
-                ErrorKind::Syntax.error(message).at_offset(path, text, start + offset)
-            })?;
+            done.map_err(|(offset, message)| ErrorKind::Syntax.error(message).at_offset(path, text, start + offset))?;
         }
         Ok(found)
     }
@@ -63,9 +61,8 @@ impl Residuals {
         let mut first = 0;
         FIRST.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
         for quantity in Quantity::ALL {
-            let stands_at = |at: usize, column: Option<String>| {
-                column.is_some_and(|it| cells.get(at) == Some(&it.into()))
-            };
+            let stands_at =
+                |at: usize, column: Option<String>| column.is_some_and(|it| cells.get(at) == Some(&it.into()));
             let stands = stands_at(first, columns(quantity, false).next());
             if quantity.is_of_pose() || stands {
                 self.has_corrected |= stands_at(first + MODELS, columns(quantity, true).nth(MODELS));
@@ -74,8 +71,7 @@ impl Residuals {
                 self.further.extend((!quantity.is_of_pose()).then_some(quantity));
             }
         }
-        self.has_corners =
-            corner_columns(false).next().is_some_and(|it| cells.get(first) == Some(&it.into()));
+        self.has_corners = corner_columns(false).next().is_some_and(|it| cells.get(first) == Some(&it.into()));
         if self.has_corners {
             let mut all = corner_columns(self.has_corrected);
             all.try_for_each(|column| expect(cells, &mut first, &column))?;
@@ -93,11 +89,8 @@ impl Residuals {
                 let name = cell.strip_suffix(&format!("[{}]", kind.symbol()))?;
                 Some((name.to_owned(), kind))
             });
-            let message = || {
-                format!(
-                    "found the column `{cell}`, expected a joint's name with [deg] or [mm]: calibrate again"
-                )
-            };
+            let message =
+                || format!("found the column `{cell}`, expected a joint's name with [deg] or [mm]: calibrate again");
             self.readings.push(reading.ok_or_else(|| CellError { cell: column, message: message() })?);
         }
         Ok(())
@@ -134,8 +127,7 @@ impl Residuals {
 fn expect(cells: &[Cow<'_, str>], next: &mut usize, expected: &str) -> std::result::Result<(), CellError> {
     let cell = cells.get(*next).map_or("", |cell| cell);
     if cell != expected {
-        let message =
-            format!("found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again");
+        let message = format!("found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again");
         return Err(CellError { cell: *next, message });
     }
     *next += 1;
@@ -192,8 +184,7 @@ impl<'a> RowCells<'a> {
     fn text(&mut self) -> std::result::Result<&'a str, CellError> {
         let cell = self.cells.get(self.next).map(|cell| &**cell);
         self.next += 1;
-        let message =
-            || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
+        let message = || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
         cell.ok_or_else(|| CellError { cell: self.next.saturating_sub(1), message: message() })
     }
 

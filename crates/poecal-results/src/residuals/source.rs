@@ -43,8 +43,7 @@ impl<'a> RowSource<'a> {
         let indices: Vec<u32> = range.filter_map(|row| u32::try_from(row).ok()).collect();
         let session = self.influence.session();
         let errors = |estimate: &Estimate| session.errors(&indices, estimate);
-        let [nominal, registered, calibrated] =
-            [&models.nominal, &models.registered, &models.calibrated].map(errors);
+        let [nominal, registered, calibrated] = [&models.nominal, &models.registered, &models.calibrated].map(errors);
         let corrected = self.calibration.correction.as_ref().map(|it| it.errors(self.data, &indices));
         let influences = self.influence.influence_of_rows(&indices);
         let row = |(at, &row): (usize, &u32)| {
@@ -82,12 +81,7 @@ impl<'a> RowSource<'a> {
     }
 
     /// Errors of the corners of a row that is a picture, by the errors of the row by each model.
-    fn corners(
-        &self,
-        row: u32,
-        errors: [&RowError; 3],
-        corrected: Option<&RowError>,
-    ) -> Option<CornerErrors> {
+    fn corners(&self, row: u32, errors: [&RowError; 3], corrected: Option<&RowError>) -> Option<CornerErrors> {
         self.data.pictures.of_row(row)?;
         let of = |error: &RowError| corner_error(self.data, row, error);
         let px = |error: &RowError| of(error).map_or(f64::NAN, |it| it.rms_px);
@@ -103,17 +97,12 @@ fn stations(data: &Dataset) -> Vec<String> {
 }
 
 /// Errors of one quantity by the three models, with the residual of the delivered one, in the unit of files, if it was measured.
-fn errors_of(
-    errors: [&RowError; 3],
-    corrected: Option<&RowError>,
-    quantity: Quantity,
-) -> Option<ModelErrors> {
+fn errors_of(errors: [&RowError; 3], corrected: Option<&RowError>, quantity: Quantity) -> Option<ModelErrors> {
     let shown = |value: f64| quantity.unit().in_shown_unit(value);
     errors[2].length(quantity)?;
     let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, shown);
     let delivered = corrected.unwrap_or(errors[2]);
-    let (measured, mut residual) =
-        (delivered.measured_components(quantity), delivered.vector(quantity).map(shown));
+    let (measured, mut residual) = (delivered.measured_components(quantity), delivered.vector(quantity).map(shown));
     residual.iter_mut().zip(measured).filter(|(_, is)| !is).for_each(|(value, _)| *value = f64::NAN);
     let components = residual.as_slice().get(..quantity.components()).unwrap_or_default();
     Some(ModelErrors::new(errors.map(length), components))

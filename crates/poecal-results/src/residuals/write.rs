@@ -82,8 +82,7 @@ pub(crate) fn in_pieces<T: Send, E: Send>(
 /// The line of column names.
 fn head(residuals: &Residuals) -> String {
     let quantities = residuals.quantities().flat_map(|quantity| columns(quantity, residuals.has_corrected));
-    let corners =
-        residuals.has_corners.then(|| corner_columns(residuals.has_corrected)).into_iter().flatten();
+    let corners = residuals.has_corners.then(|| corner_columns(residuals.has_corrected)).into_iter().flatten();
     let names = FIRST.map(str::to_owned).into_iter().chain(quantities).chain(corners);
     let names = names.chain(DIAGNOSTICS.map(str::to_owned));
     let mut text = names.collect::<Vec<_>>().join(",");
@@ -119,9 +118,7 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
         }
         match &row.judged {
             Some(RowDiagnostics { weight, leverage, studentized, suspected }) => {
-                [*weight, *leverage, *studentized]
-                    .into_iter()
-                    .for_each(|number| push_cell(&mut text, number));
+                [*weight, *leverage, *studentized].into_iter().for_each(|number| push_cell(&mut text, number));
                 text.push_str(if *suspected { ",1" } else { ",0" });
             }
             None => text.push_str(",,,,"),

@@ -57,14 +57,11 @@ fn capsules(urdf: &UrdfDocument, path: &Path) -> (Vec<Capsule>, Vec<String>) {
                 match read {
                     Ok(read) => {
                         triangles += read.len();
-                        let corners =
-                            read.iter().flatten().map(|corner| Vector3::from(corner.map(f64::from)));
+                        let corners = read.iter().flatten().map(|corner| Vector3::from(corner.map(f64::from)));
                         (corners.collect::<Vec<_>>(), 0.0)
                     }
                     Err(reason) => {
-                        notes.push(format!(
-                            "the mesh `{file}` of {link} is left out of what may collide: {reason}"
-                        ));
+                        notes.push(format!("the mesh `{file}` of {link} is left out of what may collide: {reason}"));
                         continue;
                     }
                 }

@@ -24,9 +24,8 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Me
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("found root element <{}>, expected <COLLADA>", root.tag_name().name()));
     }
-    let metre = children(root, "asset")
-        .flat_map(|asset| children(asset, "unit"))
-        .find_map(|unit| number(unit, "meter"));
+    let metre =
+        children(root, "asset").flat_map(|asset| children(asset, "unit")).find_map(|unit| number(unit, "meter"));
     let metre = metre.filter(|metre| *metre > 0.0).unwrap_or(1.0);
     let mut library = Library::from_root(root);
     let mut instances: Vec<(Node, TransformRows)> = root
@@ -35,8 +34,7 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Me
         .filter_map(|node| Some((library.find_by_url(node.attribute("url")?)?, place(node)?)))
         .collect();
     if instances.is_empty() {
-        instances =
-            root.descendants().filter(|node| is(*node, "geometry")).map(|node| (node, STILL)).collect();
+        instances = root.descendants().filter(|node| is(*node, "geometry")).map(|node| (node, STILL)).collect();
     }
     for (geometry, rows) in instances {
         library.add(geometry, &rows.map(|row| row.map(|value| value * metre)), &mut into)?;
@@ -94,17 +92,10 @@ impl<'a> Library<'a> {
     }
 
     /// Adds the faces of a geometry.
-    fn add(
-        &mut self,
-        geometry: Node<'a, 'a>,
-        rows: &TransformRows,
-        into: &mut Collector,
-    ) -> Result<(), MeshReason> {
+    fn add(&mut self, geometry: Node<'a, 'a>, rows: &TransformRows, into: &mut Collector) -> Result<(), MeshReason> {
         let forms = children(geometry, "mesh").flat_map(|mesh| mesh.children());
-        for faces in forms.filter(|node| ["triangles", "polylist", "polygons"].iter().any(|it| is(*node, it)))
-        {
-            let offset =
-                |input: Node| input.attribute("offset").map_or(Some(0), |it| it.trim().parse::<usize>().ok());
+        for faces in forms.filter(|node| ["triangles", "polylist", "polygons"].iter().any(|it| is(*node, it))) {
+            let offset = |input: Node| input.attribute("offset").map_or(Some(0), |it| it.trim().parse::<usize>().ok());
             let inputs: Vec<(Node, usize)> =
                 children(faces, "input").filter_map(|input| Some((input, offset(input)?))).collect();
             let vertex = inputs.iter().find(|(input, _)| input.attribute("semantic") == Some("VERTEX"));
@@ -120,10 +111,7 @@ impl<'a> Library<'a> {
                     .chunks(stride)
                     .filter_map(|corner| corner.get(*first))
                     .map(|&index| {
-                        places
-                            .get(index as usize)
-                            .filter(|_| index >= 0.0)
-                            .map(|place| transform_place(rows, place))
+                        places.get(index as usize).filter(|_| index >= 0.0).map(|place| transform_place(rows, place))
                     })
                     .collect::<Option<_>>()
                     .ok_or("a face of it names a corner that is not there")?;
@@ -159,9 +147,7 @@ fn step(element: Node) -> Option<TransformRows> {
         return None;
     }
     match (name, numbers(element).as_slice()) {
-        ("matrix", &[a, b, c, d, e, f, g, h, i, j, k, l, ..]) => {
-            Some([[a, b, c, d], [e, f, g, h], [i, j, k, l]])
-        }
+        ("matrix", &[a, b, c, d, e, f, g, h, i, j, k, l, ..]) => Some([[a, b, c, d], [e, f, g, h], [i, j, k, l]]),
         ("translate", &[x, y, z]) => Some([[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]),
         ("scale", &[x, y, z]) => Some([[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]]),
         ("rotate", &[x, y, z, degrees]) => {
@@ -219,9 +205,7 @@ mod tests {
         assert_eq!(found.len(), 6);
         let near = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
         // Turned by 90° about z: x becomes y.
-        for (corner, expected) in
-            found[0].iter().zip([[0.0, 0.0, 1.0], [0.0, 0.002, 1.0], [-0.002, 0.002, 1.0]])
-        {
+        for (corner, expected) in found[0].iter().zip([[0.0, 0.0, 1.0], [0.0, 0.002, 1.0], [-0.002, 0.002, 1.0]]) {
             assert!(near(*corner, expected), "{corner:?}, expected {expected:?}");
         }
         assert!(near(found[5][1], [0.502, 0.0, 0.0]), "{:?}", found[5]);

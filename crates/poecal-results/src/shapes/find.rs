@@ -33,11 +33,7 @@ impl Folders {
             return None;
         }
         // A path from the root replaces the folder.
-        self.ways
-            .iter()
-            .filter_map(|way| way.first())
-            .map(|folder| folder.join(plain))
-            .find(|path| is_file(path))
+        self.ways.iter().filter_map(|way| way.first()).map(|folder| folder.join(plain)).find(|path| is_file(path))
     }
 
     fn find_in_package(&self, rest: &str) -> Option<PathBuf> {
@@ -53,8 +49,7 @@ impl Folders {
 /// A folder and its ancestors, from the root's names; the folder itself need not exist.
 fn way(folder: &Path) -> Option<Vec<PathBuf>> {
     let disk = disk::current_disk();
-    let named =
-        |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() };
+    let named = |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() };
     let actual = disk.canonical_path(&named(folder)).ok().or_else(|| {
         let above = disk.canonical_path(&named(folder.parent()?)).ok()?;
         Some(above.join(folder.file_name()?))

@@ -135,8 +135,7 @@ impl Shapes {
 /// The shapes of a file; `mesh` returns the index of a mesh by its name and scale.
 fn collect_shapes(file: &CalibrationFile, mesh: &mut dyn FnMut(&str, [f64; 3]) -> Option<usize>) -> Shapes {
     let path = PathBuf::from(&file.inputs.model);
-    let (Ok(Some(urdf)), Ok(robot), Ok(nominal)) =
-        (file.original_urdf(&path), file.robot(), file.nominal_robot())
+    let (Ok(Some(urdf)), Ok(robot), Ok(nominal)) = (file.original_urdf(&path), file.robot(), file.nominal_robot())
     else {
         return Shapes::default();
     };

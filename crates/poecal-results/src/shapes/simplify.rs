@@ -123,14 +123,7 @@ fn write_mesh(mesh: &IndexedMesh, (least, step): ([f32; 3], f32)) -> Mesh {
     } else {
         indices.flat_map(|&index| (index as u16).to_le_bytes()).collect()
     };
-    Mesh {
-        least,
-        step,
-        places: base64(&places),
-        corners: base64(&corners),
-        wide,
-        triangles: mesh.corners.len(),
-    }
+    Mesh { least, step, places: base64(&places), corners: base64(&corners), wide, triangles: mesh.corners.len() }
 }
 
 /// Bytes as text (RFC 4648).
@@ -156,10 +149,8 @@ mod tests {
     /// A sphere of some rings.
     fn sphere(radius: f32, rings: usize) -> Triangles {
         let place = |i: usize, k: usize| {
-            let (a, b) = (
-                std::f32::consts::PI * i as f32 / rings as f32,
-                std::f32::consts::TAU * k as f32 / rings as f32,
-            );
+            let (a, b) =
+                (std::f32::consts::PI * i as f32 / rings as f32, std::f32::consts::TAU * k as f32 / rings as f32);
             // Exactly one vertex at each pole.
             let ring = if i.is_multiple_of(rings) { 0.0 } else { radius * a.sin() };
             [ring * b.cos(), ring * b.sin(), radius * a.cos()]
@@ -175,9 +166,7 @@ mod tests {
 
     #[test]
     fn text_of_bytes_is_that_of_the_standard() {
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
             assert_eq!(base64(bytes.as_bytes()), text);
         }
     }

@@ -35,8 +35,7 @@ fn covariance(model: &VisitModel, visit: &Visit, rows: &[u32], groups: &[usize])
     let entry = model.file.uncertainty.as_ref()?;
     let by_known = visit.by_known.as_ref()?.select_rows(&numbers);
     let mut all = &by_known * by_known.transpose();
-    let shown =
-        |quantity: Quantity, value: Option<f64>| quantity.unit().from_shown(value.unwrap_or_default());
+    let shown = |quantity: Quantity, value: Option<f64>| quantity.unit().from_shown(value.unwrap_or_default());
     let place: Vec<(usize, usize)> = rows
         .iter()
         .zip(groups)
@@ -101,8 +100,7 @@ fn some_of(all: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
 
 /// Rows of groups in sequence, with the group of each row.
 fn group_rows(configurations: &[Vec<u32>]) -> (Vec<u32>, Vec<usize>) {
-    let each =
-        configurations.iter().enumerate().flat_map(|(group, rows)| rows.iter().map(move |row| (*row, group)));
+    let each = configurations.iter().enumerate().flat_map(|(group, rows)| rows.iter().map(move |row| (*row, group)));
     each.unzip()
 }
 
@@ -137,8 +135,7 @@ pub(crate) fn level(
         let some: Vec<Vec<u32>> = chosen.iter().map(|at| all[*at].clone()).collect();
         let (rows, groups) = group_rows(&some);
         let Some(found) = of_rows(model, &as_anew, &rows, &groups) else { continue };
-        let evidence =
-            ProjectedChanges::new(&found.residual, &find_free_columns(&found.jacobian, &as_anew, options));
+        let evidence = ProjectedChanges::new(&found.residual, &find_free_columns(&found.jacobian, &as_anew, options));
         let mut hypotheses = hypotheses(&found.jacobian, &as_anew, options);
         leave_unseen_out(&mut hypotheses, &evidence, NoiseLevel::Known(1.0));
         let tests = HypothesisTests::new(&hypotheses);
@@ -160,8 +157,7 @@ fn shrinkage_factor(model: &VisitModel, visit: &Visit) -> f64 {
     let Some((quantity, _)) = corrected.unwrap_or(&set.calibrated).leading_value() else { return 1.0 };
     let rms = model.own_rms();
     let own = visit.residual.iter().zip(&visit.quantities).filter(|(_, it)| **it == quantity);
-    let (squares, count) =
-        own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
+    let (squares, count) = own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
     let components = quantity.components() as f64;
     let own = quantity.unit().in_shown_unit((components * squares / f64::max(count, 1.0)).sqrt());
     if own > 0.0 { (rms / own).powi(2).max(1.0) } else { 1.0 }

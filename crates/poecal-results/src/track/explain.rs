@@ -189,11 +189,7 @@ impl ProjectedChanges {
 }
 
 /// Excludes zeros of joints that are not seen, and pairs with them: their shift would exceed the linear range before it became visible.
-pub(crate) fn leave_unseen_out(
-    hypotheses: &mut [MotionHypothesis],
-    evidence: &ProjectedChanges,
-    level: NoiseLevel,
-) {
+pub(crate) fn leave_unseen_out(hypotheses: &mut [MotionHypothesis], evidence: &ProjectedChanges, level: NoiseLevel) {
     let variance = match level {
         NoiseLevel::Known(variance) => variance,
         NoiseLevel::Found(..) => 1.0,
@@ -249,11 +245,7 @@ impl NoiseLevel {
 }
 
 /// The largest ratio of any hypothesis' gain to its critical gain for noise of variance 1.
-pub(crate) fn ratio(
-    evidence: &ProjectedChanges,
-    hypotheses: &[MotionHypothesis],
-    tests: &HypothesisTests,
-) -> f64 {
+pub(crate) fn ratio(evidence: &ProjectedChanges, hypotheses: &[MotionHypothesis], tests: &HypothesisTests) -> f64 {
     let tried = hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.try_hypothesis(at, it));
     tried.map(|it| it.gain / tests.quantile(it.at, it.rank, KNOWN)).fold(0.0, f64::max)
 }
@@ -276,10 +268,8 @@ pub(crate) fn explain(
     let NoiseLevel::Known(stated) = level else { return first };
     // The scatter exceeds the stated one: the rows themselves determine it.
     let (squares, freedom) = evidence.remaining_squares();
-    let (gain, rank) = tried
-        .iter()
-        .map(|it| (it.gain, it.rank))
-        .fold((0.0, 0), |most, it| if it.0 > most.0 { it } else { most });
+    let (gain, rank) =
+        tried.iter().map(|it| (it.gain, it.rank)).fold((0.0, 0), |most, it| if it.0 > most.0 { it } else { most });
     let (squares, freedom) = (squares - gain, freedom - rank as f64);
     if freedom < 1.0 || is_noise(squares, freedom, stated) {
         return first;
@@ -318,8 +308,7 @@ fn judge_hypotheses(
         return found;
     }
     // All are compared by one variance: that of the explanation with the smallest remaining squares for its unknowns.
-    let (variance, freedom) =
-        tried.iter().map(with).fold(nothing, |least, it| if it.0 < least.0 { it } else { least });
+    let (variance, freedom) = tried.iter().map(with).fold(nothing, |least, it| if it.0 < least.0 { it } else { least });
     let score = |it: &TriedHypothesis| it.gain / variance - tests.quantile(it.at, it.rank, freedom);
     let kind = |it: &TriedHypothesis| hypotheses[it.at].kind;
     let is_simple = |it: &&TriedHypothesis| kind(it) <= ExplanationKind::Zero;
@@ -334,12 +323,10 @@ fn judge_hypotheses(
     });
     best = richer.max_by(most).or(best);
     let Some(best) = best else { return found };
-    let has_all =
-        |one: &MotionHypothesis, other: &MotionHypothesis| other.of.iter().all(|it| one.of.contains(it));
+    let has_all = |one: &MotionHypothesis, other: &MotionHypothesis| other.of.iter().all(|it| one.of.contains(it));
+    let nearly = tried.iter().filter(|it| it.at != best.at && score(it) > score(best) - NEARLY && excess(it) > 0.5);
     let nearly =
-        tried.iter().filter(|it| it.at != best.at && score(it) > score(best) - NEARLY && excess(it) > 0.5);
-    let nearly = nearly
-        .filter(|it| !(hypotheses[it.at].of.len() > 1 && has_all(&hypotheses[it.at], &hypotheses[best.at])));
+        nearly.filter(|it| !(hypotheses[it.at].of.len() > 1 && has_all(&hypotheses[it.at], &hypotheses[best.at])));
     let mut nearly: Vec<TriedHypothesis> = nearly.cloned().collect();
     nearly.sort_by(|a, b| score(b).total_cmp(&score(a)));
     let (variance, freedom) = with(best);
@@ -352,7 +339,6 @@ pub(crate) fn pick_columns(
     columns: &[ChangeColumns],
     wanted: impl Fn(ColumnSubject) -> bool,
 ) -> DMatrix<f64> {
-    let places: Vec<usize> =
-        columns.iter().filter(|it| wanted(it.of)).flat_map(|it| it.places.clone()).collect();
+    let places: Vec<usize> = columns.iter().filter(|it| wanted(it.of)).flat_map(|it| it.places.clone()).collect();
     jacobian.select_columns(&places)
 }

@@ -7,26 +7,16 @@ use super::options::TrackOptions;
 use super::visit::{ChangeColumns, ColumnSubject, Visit};
 
 /// Columns of the unknowns that are free in any case: frames of newly set up devices, and targets of a newly mounted tool.
-pub(crate) fn find_free_columns(
-    jacobian: &DMatrix<f64>,
-    visit: &Visit,
-    options: &TrackOptions,
-) -> DMatrix<f64> {
+pub(crate) fn find_free_columns(jacobian: &DMatrix<f64>, visit: &Visit, options: &TrackOptions) -> DMatrix<f64> {
     pick_columns(jacobian, &visit.columns, |of| match of {
         ColumnSubject::Device(_) => !visit.device_is_known,
         ColumnSubject::Target(_) => options.tool_is_anew,
-        ColumnSubject::Lengths | ColumnSubject::Zero(_) | ColumnSubject::Axis(_) | ColumnSubject::Give(_) => {
-            false
-        }
+        ColumnSubject::Lengths | ColumnSubject::Zero(_) | ColumnSubject::Axis(_) | ColumnSubject::Give(_) => false,
     })
 }
 
 /// All possible explanations of changes.
-pub(crate) fn hypotheses(
-    jacobian: &DMatrix<f64>,
-    visit: &Visit,
-    options: &TrackOptions,
-) -> Vec<MotionHypothesis> {
+pub(crate) fn hypotheses(jacobian: &DMatrix<f64>, visit: &Visit, options: &TrackOptions) -> Vec<MotionHypothesis> {
     let columns = &visit.columns;
     let one = |kind: ExplanationKind, it: &ChangeColumns| MotionHypothesis {
         kind,
@@ -36,8 +26,7 @@ pub(crate) fn hypotheses(
         is_candidate: true,
     };
     let mut found = Vec::new();
-    let targets: Vec<&ChangeColumns> =
-        columns.iter().filter(|it| matches!(it.of, ColumnSubject::Target(_))).collect();
+    let targets: Vec<&ChangeColumns> = columns.iter().filter(|it| matches!(it.of, ColumnSubject::Target(_))).collect();
     if !options.tool_is_anew {
         match targets.as_slice() {
             [] => {}

@@ -17,11 +17,8 @@ pub(crate) fn several_zeros(
     hypotheses: &[MotionHypothesis],
     variance: f64,
 ) -> Option<(MotionHypothesis, HypothesisVerdict)> {
-    let zeros: Vec<&MotionHypothesis> = hypotheses
-        .iter()
-        .filter(|it| it.kind == ExplanationKind::Zero && it.is_candidate)
-        .take(MOST)
-        .collect();
+    let zeros: Vec<&MotionHypothesis> =
+        hypotheses.iter().filter(|it| it.kind == ExplanationKind::Zero && it.is_candidate).take(MOST).collect();
     let left = evidence.remaining_squares();
     for size in 3..=zeros.len() {
         let sets = (0u32..1 << zeros.len()).filter(|set| set.count_ones() as usize == size);
@@ -32,10 +29,8 @@ pub(crate) fn several_zeros(
             let tried = evidence.try_hypothesis(hypotheses.len(), &together)?;
             let squares = left.0 - tried.gain;
             let freedom = left.1 - tried.rank as f64;
-            let is_each =
-                tried.step.iter().all(|(value, sigma)| value.abs() > LEAST * sigma * variance.sqrt());
-            (tried.rank == size && is_each && is_noise(squares, freedom, variance))
-                .then_some((together, tried))
+            let is_each = tried.step.iter().all(|(value, sigma)| value.abs() > LEAST * sigma * variance.sqrt());
+            (tried.rank == size && is_each && is_noise(squares, freedom, variance)).then_some((together, tried))
         });
         let best = found.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
         if let Some((together, tried)) = best {
@@ -46,14 +41,7 @@ pub(crate) fn several_zeros(
 }
 
 fn verdict(best: TriedHypothesis, variance: f64, left: (f64, f64)) -> HypothesisVerdict {
-    HypothesisVerdict {
-        best: Some(best),
-        nearly: Vec::new(),
-        variance,
-        freedom: KNOWN,
-        is_wider: false,
-        left,
-    }
+    HypothesisVerdict { best: Some(best), nearly: Vec::new(), variance, freedom: KNOWN, is_wider: false, left }
 }
 
 /// Some zeros as one explanation.

@@ -30,9 +30,11 @@ impl VisitModel {
             None => usual,
             Some(sigma_m) => {
                 let share = sigma_m / usual[Quantity::Position];
-                ByQuantity::from_fn(|quantity| {
-                    if quantity == Quantity::Position { sigma_m } else { usual[quantity] * share }
-                })
+                ByQuantity::from_fn(
+                    |quantity| {
+                        if quantity == Quantity::Position { sigma_m } else { usual[quantity] * share }
+                    },
+                )
             }
         };
         let joints = (0..robot.joints.len()).filter(|&joint| robot.joints[joint].give_of.is_none()).collect();

@@ -141,13 +141,7 @@ impl VisitChanges {
         if !by_known.is_empty() {
             (residual, jacobian) = weigh_known(&DMatrix::from_rows(&by_known), residual, jacobian)?;
         }
-        Some(VisitChanges {
-            residual,
-            jacobian,
-            sigma: DVector::from_vec(sigma),
-            scatter: (squares, freedom),
-            rows,
-        })
+        Some(VisitChanges { residual, jacobian, sigma: DVector::from_vec(sigma), scatter: (squares, freedom), rows })
     }
 }
 
@@ -178,7 +172,6 @@ fn mean(visit: &Visit, rows: &[u32], number: usize) -> (f64, f64) {
 fn scatter(visit: &Visit, rows: &[u32], number: usize) -> (f64, f64) {
     let (value, _) = mean(visit, rows, number);
     let at = |row: &u32| visit.starts[*row as usize] + number;
-    let squares =
-        rows.iter().map(|row| ((visit.residual[at(row)] - value) / visit.sigma[at(row)]).powi(2)).sum();
+    let squares = rows.iter().map(|row| ((visit.residual[at(row)] - value) / visit.sigma[at(row)]).powi(2)).sum();
     (squares, rows.len() as f64 - 1.0)
 }

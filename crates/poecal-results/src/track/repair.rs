@@ -11,9 +11,7 @@ use super::options::{JudgingBasis, MOST_RAD, TrackOptions};
 use super::visit::ColumnSubject;
 use super::visit_judgement::{Baseline, JudgedVisit};
 use super::visit_result::explanation;
-use crate::calibration_file::{
-    CalibrationFile, JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart,
-};
+use crate::calibration_file::{CalibrationFile, JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart};
 use poecal_arm::lie::{Pose, Twist};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
@@ -68,12 +66,8 @@ pub fn recalibrate(
     let beside = side_by_side(&free_columns, &hypothesis.columns);
     let rest: Vec<MotionHypothesis> =
         all.iter().filter(|it| it.kind <= ExplanationKind::Zero && it.of != [of]).cloned().collect();
-    let verdict = explain(
-        &ProjectedChanges::new(&changes.residual, &beside),
-        &rest,
-        &HypothesisTests::new(&rest),
-        level,
-    );
+    let verdict =
+        explain(&ProjectedChanges::new(&changes.residual, &beside), &rest, &HypothesisTests::new(&rest), level);
     refuse_others(&verdict, &rest, (&model, &data), (what, joint))?;
     let variance = verdict.variance;
     let step: Vec<f64> = tried.step.iter().map(|it| it.0).collect();
@@ -87,8 +81,7 @@ pub fn recalibrate(
     let twists = if part == RepairedPart::Axis { axis_twists(&visit.axes[at], turns) } else { Vec::new() };
     let repair = JointRepair { joint: joint.to_owned(), part, step, twists, covariance };
     let (size, sigma) = repair.size();
-    let shown =
-        |value: f64| if turns || part == RepairedPart::Axis { value.to_degrees() } else { 1e3 * value };
+    let shown = |value: f64| if turns || part == RepairedPart::Axis { value.to_degrees() } else { 1e3 * value };
     let provenance = RecalibratedEntry {
         joint: joint.to_owned(),
         part,

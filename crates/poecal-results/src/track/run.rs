@@ -1,8 +1,8 @@
 //! Judgement of a visit: the steps in order.
 
 use super::explain::{
-    HypothesisTests, HypothesisVerdict, MotionHypothesis, NoiseLevel, ProjectedChanges, TriedHypothesis,
-    explain, leave_unseen_out,
+    HypothesisTests, HypothesisVerdict, MotionHypothesis, NoiseLevel, ProjectedChanges, TriedHypothesis, explain,
+    leave_unseen_out,
 };
 use super::hypotheses::{find_free_columns, hypotheses};
 use super::joint_combinations::several_zeros;
@@ -58,17 +58,13 @@ pub fn track(
 ) -> Result<VisitResult> {
     let judged = JudgedVisit::from_rows(file, data, earlier, options)?;
     let JudgedVisit { model, visit, data, changes, level, .. } = &judged;
-    let evidence =
-        ProjectedChanges::new(&changes.residual, &find_free_columns(&changes.jacobian, visit, options));
+    let evidence = ProjectedChanges::new(&changes.residual, &find_free_columns(&changes.jacobian, visit, options));
     let mut hypotheses = hypotheses(&changes.jacobian, visit, options);
     leave_unseen_out(&mut hypotheses, &evidence, *level);
     let tests = HypothesisTests::new(&hypotheses);
     let stated = stated_variance(*level, judged.judged_by);
-    let verdict = complete_verdict(
-        explain(&evidence, &hypotheses, &tests, *level),
-        stated,
-        (&evidence, &mut hypotheses),
-    );
+    let verdict =
+        complete_verdict(explain(&evidence, &hypotheses, &tests, *level), stated, (&evidence, &mut hypotheses));
     let mut notes = judged.notes.clone();
     if judged.repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
         notes.push(visit_sentences::describe_copy());
@@ -162,9 +158,8 @@ fn complete_verdict(
     stated: Option<f64>,
     (evidence, hypotheses): (&ProjectedChanges, &mut Vec<MotionHypothesis>),
 ) -> HypothesisVerdict {
-    let several = stated
-        .filter(|_| verdict.is_wider)
-        .and_then(|variance| several_zeros(evidence, hypotheses, variance));
+    let several =
+        stated.filter(|_| verdict.is_wider).and_then(|variance| several_zeros(evidence, hypotheses, variance));
     let Some((several, complete)) = several else { return verdict };
     hypotheses.push(several);
     complete

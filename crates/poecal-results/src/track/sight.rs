@@ -2,9 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::explain::{
-    ExplanationKind, HypothesisTests, HypothesisVerdict, MotionHypothesis, ProjectedChanges, Size,
-};
+use super::explain::{ExplanationKind, HypothesisTests, HypothesisVerdict, MotionHypothesis, ProjectedChanges, Size};
 use super::hypotheses::find_free_columns;
 use super::model::VisitModel;
 use super::options::{MOST_M, MOST_RAD, TrackOptions};
@@ -93,14 +91,7 @@ pub(crate) fn joints(
             }
             () => Some(Undetectable::NoMotion),
         };
-        Some(JointSight {
-            joint: joint.name.clone(),
-            slides,
-            sigma: own,
-            smallest: factor * own,
-            unseen,
-            shift: None,
-        })
+        Some(JointSight { joint: joint.name.clone(), slides, sigma: own, smallest: factor * own, unseen, shift: None })
     };
     zeros.filter_map(sight).collect()
 }

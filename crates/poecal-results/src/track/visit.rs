@@ -9,9 +9,7 @@ use poecal_calibrate::whitened_rows;
 use poecal_fit::parameters::{Parameter, ParameterSubject, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal_fit::problem::Problem;
 use poecal_fit::start::{Registration, device_parameter, faces_on_known_planes, register, target_parameters};
-use poecal_fit::state::{
-    Estimate, InstrumentMount, Linkage, PackedValues, RowChain, Session, nominal_estimate,
-};
+use poecal_fit::state::{Estimate, InstrumentMount, Linkage, PackedValues, RowChain, Session, nominal_estimate};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::{Body, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -75,8 +73,7 @@ impl Visit {
             .iter()
             .zip(&self.quantities)
             .filter(|(_, it)| it.unit() == poecal_numerics::unit::Unit::Metre);
-        let (sum, count) =
-            own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
+        let (sum, count) = own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));
         if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
     }
 
@@ -116,11 +113,7 @@ impl Visit {
             let place = jacobian.ncols();
             jacobian = jacobian.insert_column(place, 0.0);
             jacobian.set_column(place, &lengths.column(0));
-            columns.push(ChangeColumns {
-                of: ColumnSubject::Lengths,
-                places: vec![place],
-                turns: vec![false],
-            });
+            columns.push(ChangeColumns { of: ColumnSubject::Lengths, places: vec![place], turns: vec![false] });
         }
         let motions = |target: usize| {
             let own = problem.layout().parameters().filter_map(|(parameter, _)| parameter.target_motions());
@@ -156,13 +149,8 @@ fn place(
         *estimate.device_mut(station) = device.inverse();
     }
     if session.device_free || options.tool_is_anew {
-        let registration = Registration {
-            session,
-            rows,
-            noise: model.noise,
-            targets_free: options.tool_is_anew,
-            prior: None,
-        };
+        let registration =
+            Registration { session, rows, noise: model.noise, targets_free: options.tool_is_anew, prior: None };
         check_count(&registration, data, rows)?;
         estimate = register(&registration, &estimate).0;
     }
@@ -177,9 +165,8 @@ fn sort_columns(problem: &Problem<'_>, robot: &Robot, jacobian: &mut DMatrix<f64
         let own = places.iter().map(|(place, _)| *place);
         let turns = places.iter().map(|(_, scale)| *scale != 1.0);
         let Some(of) = subject(parameter, robot) else { continue };
-        let known = columns
-            .iter_mut()
-            .find(|it: &&mut ChangeColumns| it.of == of && matches!(of, ColumnSubject::Give(_)));
+        let known =
+            columns.iter_mut().find(|it: &&mut ChangeColumns| it.of == of && matches!(of, ColumnSubject::Give(_)));
         match known {
             Some(give) => (give.places.extend(own), give.turns.extend(turns)).0,
             None => columns.push(ChangeColumns { of, places: own.collect(), turns: turns.collect() }),
@@ -207,8 +194,7 @@ fn unwhiten(
             quantities.push(channel.quantity);
         }
         let of_places = channels.range(Quantity::Position);
-        let on_base =
-            matches!(estimate.tree.instruments().get(seen.station), Some(InstrumentMount::On(Body::Base)));
+        let on_base = matches!(estimate.tree.instruments().get(seen.station), Some(InstrumentMount::On(Body::Base)));
         if of_places.len() == 3 && on_base && seen.noise_shape.is_none() {
             let turn = estimate.device(seen.station).rotation.transpose();
             let first = start + of_places.start;
@@ -230,11 +216,8 @@ fn unwhiten(
 /// Refuses rows that do not determine the frames of device and tool.
 fn check_count(registration: &Registration<'_>, data: &Dataset, rows: &[u32]) -> Result<()> {
     let frames = if registration.session.device_free { 6 * data.station_count() } else { 0 };
-    let tool: usize = if registration.targets_free {
-        data.target_freedoms(rows).into_iter().map(|it| it.count()).sum()
-    } else {
-        0
-    };
+    let tool: usize =
+        if registration.targets_free { data.target_freedoms(rows).into_iter().map(|it| it.count()).sum() } else { 0 };
     let given: usize = data.observations.iter().map(|row| row.measurement.dim()).sum();
     if given > frames + tool + 1 {
         return Ok(());
@@ -253,9 +236,8 @@ fn check_count(registration: &Registration<'_>, data: &Dataset, rows: &[u32]) ->
 /// All possible changes.
 fn unknowns(model: &VisitModel, session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Parameter> {
     let data = session.data;
-    let stations = (0..data.station_count()).filter(|&station| {
-        !data.seen_from(station, rows).is_empty() && estimate.tree.shared_target(station).is_none()
-    });
+    let stations = (0..data.station_count())
+        .filter(|&station| !data.seen_from(station, rows).is_empty() && estimate.tree.shared_target(station).is_none());
     let mut free: Vec<Parameter> = stations.map(|station| device_parameter(data, station, rows)).collect();
     let robot = &model.robot;
     for &joint in &model.joints {
@@ -283,9 +265,7 @@ fn subject(parameter: &Parameter, robot: &Robot) -> Option<ColumnSubject> {
     Some(match (parameter.model().subject(), parameter.value_term(), parameter.screw_axis()) {
         (ParameterSubject::Instrument(station), ..) => ColumnSubject::Device(station),
         (ParameterSubject::Target(target), ..) => ColumnSubject::Target(target),
-        (ParameterSubject::Joint(joint), Some(term), _) if term.term == Term::OFFSET => {
-            ColumnSubject::Zero(joint)
-        }
+        (ParameterSubject::Joint(joint), Some(term), _) if term.term == Term::OFFSET => ColumnSubject::Zero(joint),
         (ParameterSubject::Joint(joint), Some(_), _) => ColumnSubject::Give(owner(joint)),
         (ParameterSubject::Joint(joint), _, Some(_)) => ColumnSubject::Axis(joint),
         _ => return None,
@@ -315,12 +295,9 @@ fn by_known(
     for (parameter, places) in found.layout.parameters() {
         let parameter = match parameter.target_motions() {
             None => Some(*parameter),
-            Some((target, _)) => {
-                targets.iter().position(|at| *at == target).map(|own| of_target(parameter, own))
-            }
+            Some((target, _)) => targets.iter().position(|at| *at == target).map(|own| of_target(parameter, own)),
         };
-        let is_device =
-            parameter.is_some_and(|it| matches!(it.model().subject(), ParameterSubject::Instrument(_)));
+        let is_device = parameter.is_some_and(|it| matches!(it.model().subject(), ParameterSubject::Instrument(_)));
         if let Some(parameter) = parameter.filter(|_| !is_device) {
             free.push(parameter);
             from.extend(places.iter().map(|(place, _)| *place));
@@ -364,11 +341,9 @@ fn lengths(
     let mut chain = RowChain::default();
     let mut found = DMatrix::zeros(jacobian.nrows(), 1);
     for (row, seen) in data.observations.iter().enumerate() {
-        let is_on_base =
-            matches!(estimate.tree.instruments().get(seen.station), Some(InstrumentMount::On(Body::Base)));
+        let is_on_base = matches!(estimate.tree.instruments().get(seen.station), Some(InstrumentMount::On(Body::Base)));
         let device = columns.iter().find(|it| it.of == ColumnSubject::Device(seen.station))?;
-        let shifts =
-            device.places.get(..3).filter(|_| is_on_base && !device.turns.iter().take(3).any(|it| *it))?;
+        let shifts = device.places.get(..3).filter(|_| is_on_base && !device.turns.iter().take(3).any(|it| *it))?;
         chain.evaluate(&linkage, packed, row, seen);
         let away: Vector3<f64> = chain.target.translation - estimate.device(seen.station).translation;
         for number in starts[row]..starts[row + 1] {

@@ -67,9 +67,7 @@ impl JudgedVisit {
         });
         let repeated = pairs.as_ref().map_or(0, |it| it.rows.len());
         let is_enough = |it: &VisitChanges| {
-            ProjectedChanges::new(&it.residual, &find_free_columns(&it.jacobian, &visit, options))
-                .remaining_squares()
-                .1
+            ProjectedChanges::new(&it.residual, &find_free_columns(&it.jacobian, &visit, options)).remaining_squares().1
                 >= FREEDOM
         };
         let (judged_by, changes, level) = match pairs.filter(is_enough) {
@@ -85,8 +83,7 @@ impl JudgedVisit {
                     notes.push(visit_sentences::few_repeat(repeated, data.len()));
                 }
                 let count = data.configurations(&data.all_rows()).len();
-                let changes =
-                    by_model::changes(&model, &visit, &data).ok_or_else(visit_sentences::no_uncertainty)?;
+                let changes = by_model::changes(&model, &visit, &data).ok_or_else(visit_sentences::no_uncertainty)?;
                 let (level, is_found) = by_model::level(&model, earlier, count, options)?;
                 notes.extend((!is_found).then(visit_sentences::level_is_assumed));
                 notes.extend((!model.is_corrected).then(visit_sentences::geometry_alone));

@@ -68,8 +68,8 @@ impl ChangeExplanation {
             return Some((only.value, only.sigma));
         }
         let length = own.iter().map(|it| it.value * it.value).sum::<f64>().sqrt();
-        let along = own.iter().map(|it| (it.value * it.sigma).powi(2)).sum::<f64>().sqrt()
-            / length.max(f64::MIN_POSITIVE);
+        let along =
+            own.iter().map(|it| (it.value * it.sigma).powi(2)).sum::<f64>().sqrt() / length.max(f64::MIN_POSITIVE);
         (!own.is_empty()).then_some((length, along))
     }
 
@@ -78,10 +78,7 @@ impl ChangeExplanation {
     pub fn is_far(&self) -> bool {
         matches!(
             self.kind,
-            ExplanationKind::Zero
-                | ExplanationKind::TwoZeros
-                | ExplanationKind::Zeros
-                | ExplanationKind::Axis
+            ExplanationKind::Zero | ExplanationKind::TwoZeros | ExplanationKind::Zeros | ExplanationKind::Axis
         ) && self.sizes.iter().any(|it| it.turns && it.value.abs() > MOST_RAD)
     }
 }

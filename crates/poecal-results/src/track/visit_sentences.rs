@@ -6,7 +6,8 @@ use poecal_numerics::error::{Error, ErrorKind};
 /// Sentence if too few rows repeat an earlier configuration.
 pub(crate) fn few_repeat(repeated: usize, rows: usize) -> String {
     match repeated {
-        0 => "none of the rows repeats a configuration of the earlier rows (to 0.1 deg or 0.1 mm): judged by the model".to_owned(),
+        0 => "none of the rows repeats a configuration of the earlier rows (to 0.1 deg or 0.1 mm): judged by the model"
+            .to_owned(),
         some => format!(
             "only {some} of the {rows} rows repeat configurations of the earlier rows, too few to be judged alone: judged by the model"
         ),
@@ -43,9 +44,7 @@ pub(crate) fn describe_wider_scatter(is_stated: bool, is_explained: bool, times:
             "the rows scatter {times:.1} times as much as the stated repeatability, and no change explains it: judged by their own scatter"
         )
     } else {
-        format!(
-            "the rows scatter {times:.1} times as much as the model lets expect: judged by their own scatter"
-        )
+        format!("the rows scatter {times:.1} times as much as the model lets expect: judged by their own scatter")
     }
 }
 
@@ -68,7 +67,5 @@ pub(crate) fn describe_copy() -> String {
 /// Sentence if a shift exceeds the linear range.
 pub(crate) fn describe_far_shift(found: &ChangeExplanation) -> String {
     let name = found.names.first().map(String::as_str).unwrap_or_default();
-    format!(
-        "the shift of joint `{name}` is beyond 2 deg, where rows are no linear function of it: calibrate anew"
-    )
+    format!("the shift of joint `{name}` is beyond 2 deg, where rows are no linear function of it: calibrate anew")
 }

@@ -68,8 +68,7 @@ impl Candidates {
     fn deviations(&self, sum: &DMatrix<f64>) -> (Vec<(f64, f64)>, f64) {
         let n = sum.nrows();
         let ridge = |matrix: &mut DMatrix<f64>| {
-            (0..matrix.nrows())
-                .for_each(|at| matrix[(at, at)] += RIDGE * matrix[(at, at)].max(f64::MIN_POSITIVE));
+            (0..matrix.nrows()).for_each(|at| matrix[(at, at)] += RIDGE * matrix[(at, at)].max(f64::MIN_POSITIVE));
         };
         let k = self.free;
         let mut own = sum.view((0, 0), (k, k)).into_owned();
@@ -87,8 +86,7 @@ impl Candidates {
         let count = self.seen.len();
         let upper: Vec<f64> = (0..count * count).map(|at| held[(at / count, at % count)]).collect();
         let apart = linalg::cholesky(&upper, count, 0.0).map(|factor| linalg::inverse(&factor));
-        let deviation =
-            |information: f64| if information > 0.0 { information.powf(-0.5) } else { f64::INFINITY };
+        let deviation = |information: f64| if information > 0.0 { information.powf(-0.5) } else { f64::INFINITY };
         let each = (0..count).map(|at| {
             let variance = apart.as_ref().map_or(f64::INFINITY, |it| it[at * count + at]);
             (deviation(seen[(at, at)]), variance.max(0.0).sqrt())
@@ -173,11 +171,8 @@ pub fn witnesses(
     );
     leave_unseen_out(&mut hypotheses, &evidence, NoiseLevel::Known(1.0));
     let tests = HypothesisTests::new(&hypotheses);
-    let freedom = if options.repeatability_m.is_some() {
-        f64::INFINITY
-    } else {
-        (own.len() - candidates.free - 1) as f64
-    };
+    let freedom =
+        if options.repeatability_m.is_some() { f64::INFINITY } else { (own.len() - candidates.free - 1) as f64 };
     let joints = joints(&changes, &visit, &model, (&hypotheses, &tests), (1.0, freedom), options);
     let configurations = chosen.iter().map(|at| some[*at].clone()).collect();
     let sigma_m = model.noise[poecal_model::measurement::Quantity::Position];
@@ -224,8 +219,7 @@ fn candidates(visit: &Visit, configurations: &[Vec<u32>], options: &TrackOptions
         let own = rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]);
         let changes = of_repeats(visit, &own.collect::<Vec<usize>>());
         let free = find_free_columns(&changes.jacobian, visit, options);
-        let zeros =
-            pick_columns(&changes.jacobian, &visit.columns, |of| matches!(of, ColumnSubject::Zero(_)));
+        let zeros = pick_columns(&changes.jacobian, &visit.columns, |of| matches!(of, ColumnSubject::Zero(_)));
         let tool = pick_columns(&changes.jacobian, &visit.columns, |of| {
             matches!(of, ColumnSubject::Target(_)) && !options.tool_is_anew
         });
@@ -236,18 +230,15 @@ fn candidates(visit: &Visit, configurations: &[Vec<u32>], options: &TrackOptions
         both.columns_mut(k + n, tool.ncols()).copy_from(&tool);
         ((k, tool.ncols()), both.tr_mul(&both))
     };
-    let (counts, all): (Vec<(usize, usize)>, Vec<DMatrix<f64>>) =
-        configurations.iter().map(information).unzip();
+    let (counts, all): (Vec<(usize, usize)>, Vec<DMatrix<f64>>) = configurations.iter().map(information).unzip();
     let (free, mut tool) = counts.first().copied().unwrap_or_default();
     let zeros = all.first().map_or(0, DMatrix::nrows) - free - tool;
     if tool > 6 {
         // With several targets the tool is seen well.
         tool = 0;
     }
-    let all: Vec<DMatrix<f64>> = all
-        .into_iter()
-        .map(|it| it.view((0, 0), (free + zeros + tool, free + zeros + tool)).into_owned())
-        .collect();
+    let all: Vec<DMatrix<f64>> =
+        all.into_iter().map(|it| it.view((0, 0), (free + zeros + tool, free + zeros + tool)).into_owned()).collect();
     let found = Candidates { all, free, tool, seen: (0..zeros).collect() };
     let every: Vec<usize> = (0..configurations.len()).collect();
     let share = configurations.len() as f64 / 8.0;
@@ -273,13 +264,8 @@ fn exchange_choices(candidates: &Candidates, count: usize) -> Vec<usize> {
         for _ in 0..ROUNDS {
             let mut is_better = false;
             for place in 0..count {
-                let without: Vec<usize> = chosen
-                    .iter()
-                    .copied()
-                    .enumerate()
-                    .filter(|(at, _)| *at != place)
-                    .map(|it| it.1)
-                    .collect();
+                let without: Vec<usize> =
+                    chosen.iter().copied().enumerate().filter(|(at, _)| *at != place).map(|it| it.1).collect();
                 let rest = candidates.sum(&without);
                 let others = (0..total).filter(|at| !chosen.contains(at));
                 let costs = others.map(|at| (candidates.cost(&(&rest + &candidates.all[at])), at));

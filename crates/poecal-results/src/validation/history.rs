@@ -49,8 +49,7 @@ pub fn current_time() -> Option<String> {
     {
         use std::time::{Duration, SystemTime};
         let stated = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|text| text.parse().ok());
-        let stated =
-            stated.and_then(|seconds| SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs(seconds)));
+        let stated = stated.and_then(|seconds| SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs(seconds)));
         Some(humantime::format_rfc3339_seconds(stated.unwrap_or_else(SystemTime::now)).to_string())
     }
 }
@@ -71,10 +70,7 @@ impl History {
             there => there.map_err(failed)?,
         };
         if there.kind != ObjectKind::File {
-            return Err(history_error(
-                path,
-                "found no file, expected the history of checks or nothing".to_owned(),
-            ));
+            return Err(history_error(path, "found no file, expected the history of checks or nothing".to_owned()));
         }
         let mut text = Vec::new();
         disk.open(path)
@@ -85,15 +81,13 @@ impl History {
         }
         let is_torn = text.last().is_some_and(|last| *last != b'\n');
         let lines = text.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
-        let is_check = |line: &Value| {
-            line.get("schema").and_then(Value::as_str).is_some_and(|it| [SCHEMA, TRACK].contains(&it))
-        };
+        let is_check =
+            |line: &Value| line.get("schema").and_then(Value::as_str).is_some_and(|it| [SCHEMA, TRACK].contains(&it));
         let lines: Vec<Value> = lines.filter(is_check).collect();
         // A run that was killed while it wrote the first line leaves the beginning of a line.
         let begins_one = text.first() == Some(&b'{') && serde_json::from_slice::<IgnoredAny>(&text).is_err();
         if lines.is_empty() && !text.is_empty() && !(is_torn && begins_one && !text.contains(&b'\n')) {
-            let message =
-                "found a file without a check, expected the history of checks or nothing".to_owned();
+            let message = "found a file without a check, expected the history of checks or nothing".to_owned();
             return Err(history_error(path, message));
         }
         Ok(History { path: path.to_owned(), is_torn, lines })
@@ -133,8 +127,7 @@ impl History {
             out.write_all(text.as_bytes())?;
             out.sync()
         });
-        written
-            .map_err(|error| history_error(&self.path, format!("the history cannot be written ({error})")))?;
+        written.map_err(|error| history_error(&self.path, format!("the history cannot be written ({error})")))?;
         self.is_torn = false;
         self.lines.push(line);
         Ok(())

@@ -13,8 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::calibration_file::CalibrationFile;
 use super::record::Record;
 use poecal_calibrate::{
-    AcceptanceLimits, AcceptedModel, Gain, JudgedError, Judgement, Level, PredictiveDistribution,
-    RefittedPart,
+    AcceptanceLimits, AcceptedModel, Gain, JudgedError, Judgement, Level, PredictiveDistribution, RefittedPart,
 };
 use poecal_import::{InputEntry, JoinEntry};
 use poecal_model::measurement::{Dataset, MeasuredQuantities, Quantity};
@@ -150,9 +149,7 @@ impl Validation {
         for earlier in (1..stages).rev() {
             let other = file.at_stage(original, earlier);
             let Ok(found) = judge(&other) else { continue };
-            if found.delivered_model().errors.lead().rms
-                < FITS * judgement.delivered_model().errors.lead().rms
-            {
+            if found.delivered_model().errors.lead().rms < FITS * judgement.delivered_model().errors.lead().rms {
                 (data, judgement, stage) = (other, found, earlier);
             }
         }

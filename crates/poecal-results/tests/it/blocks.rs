@@ -2,9 +2,7 @@
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
-use poecal_calibrate::{
-    BlockChoice, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate,
-};
+use poecal_calibrate::{BlockChoice, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate};
 use poecal_fit::analysis::{Cause, Direction};
 use poecal_fit::state::PackedValues;
 use poecal_formats::proof::Difference;
@@ -76,10 +74,7 @@ fn what_is_held_stays_and_the_rest_is_found() {
             }
             let target = if kind == SessionKind::POINT { 3 } else { 6 };
             let Identified { parameters, rank } = identified_counts(&found);
-            println!(
-                "{kind:?} prior {has_prior}: {parameters} {rank}, held out {:.1e} mm",
-                held_out_mm(&found)
-            );
+            println!("{kind:?} prior {has_prior}: {parameters} {rank}, held out {:.1e} mm", held_out_mm(&found));
             // The axis, the device's frame and the target.
             assert_eq!((parameters, rank), (4 + 6 + target, 4 + 6 + target));
             // A prior biases the result by its share of an exact fit's noise, which is rounding.
@@ -168,11 +163,9 @@ fn words_that_name_nothing_are_refused() {
 
 #[test]
 fn files_hold_what_was_held_and_the_terms_that_were_found() {
-    let made = Simulation { count: 80, ..Simulation::default() }
-        .run(&arm_with_offset_tip(), SessionKind::POSE)
-        .unwrap();
-    let found =
-        calibrate_blocks(&made.nominal, &made.data, choice(&["joint1", "joint5"], &["joint3.offset"]), true);
+    let made =
+        Simulation { count: 80, ..Simulation::default() }.run(&arm_with_offset_tip(), SessionKind::POSE).unwrap();
+    let found = calibrate_blocks(&made.nominal, &made.data, choice(&["joint1", "joint5"], &["joint3.offset"]), true);
     let term = found.robot.terms[0];
     assert_eq!((term.joint, term.term), (2, Term::OFFSET));
     let file = CalibrationFile::new(&found, &made.data, Inputs::default());
@@ -226,9 +219,8 @@ const TERMS: &[(&str, f64)] = &[
 fn arm_with_masses() -> Robot {
     let mut robot = arm_with_offset_tip();
     let masses = [(1, 9.0, 0.3), (2, 6.0, 0.72), (4, 2.0, 0.7)];
-    robot.masses = masses
-        .map(|(joint, kg, z)| Mass { body: Body::Link(joint), place: Vector3::new(0.3, 0.02, z), kg })
-        .into();
+    robot.masses =
+        masses.map(|(joint, kg, z)| Mass { body: Body::Link(joint), place: Vector3::new(0.3, 0.02, z), kg }).into();
     robot
 }
 
@@ -319,9 +311,8 @@ fn a_fit_without_unknowns_is_refused_and_registration_alone_is_judged_by_its_err
 
 #[test]
 fn offsets_beside_free_axes_are_no_unknowns_of_their_own() {
-    let made = Simulation { count: 80, ..Simulation::default() }
-        .run(&arm_with_offset_tip(), SessionKind::POSE)
-        .unwrap();
+    let made =
+        Simulation { count: 80, ..Simulation::default() }.run(&arm_with_offset_tip(), SessionKind::POSE).unwrap();
     let found = calibrate_blocks(&made.nominal, &made.data, choice(&[], &["*.offset"]), true);
     let Identified { parameters, rank } = identified_counts(&found);
     println!("{parameters} {rank} {:?}", found.identifiability.structural.last());

@@ -3,14 +3,12 @@
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::{
-    AcceptedModel, BlockChoice, CalibrationOptions, Correction, CorrectionModel, Corrections, Level, Sizes,
-    TermGroup, calibrate,
+    AcceptedModel, BlockChoice, CalibrationOptions, Correction, CorrectionModel, Corrections, Level, Sizes, TermGroup,
+    calibrate,
 };
 use poecal_fit::state::{Estimate, PackedValues, RowError, Session};
 use poecal_model::measurement::{Dataset, Measurement, Quantity};
-use poecal_model::robot::{
-    CompliantDirections, CorrectionExtent, GravityDirection, JointTerm, Robot, Term, TermKind,
-};
+use poecal_model::robot::{CompliantDirections, CorrectionExtent, GravityDirection, JointTerm, Robot, Term, TermKind};
 use poecal_model::simulate::{SessionKind, Simulation, elbow, random};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::residuals::Residuals;
@@ -49,8 +47,7 @@ fn measure_elbow(rows: usize) -> (Robot, Dataset) {
     let mut generator = ChaCha8Rng::seed_from_u64(5);
     let mut data = Dataset::new(nominal.reading_names());
     for _ in 0..rows {
-        let readings: Vec<f64> =
-            (0..6).map(|_| 2.4 * (2.0 * random::uniform_number(&mut generator) - 1.0)).collect();
+        let readings: Vec<f64> = (0..6).map(|_| 2.4 * (2.0 * random::uniform_number(&mut generator) - 1.0)).collect();
         let mut pose = device_from_base * model.robot.forward_kinematics(&readings);
         pose.translation += 2e-5 * Vector3::from_fn(|_, _| random::normal(&mut generator));
         let turn = 5e-5 * Vector3::from_fn(|_, _| random::normal(&mut generator));
@@ -81,18 +78,13 @@ fn sag_and_eccentric_gears_are_found_and_predicted() {
 /// Without planted effects, sizes that are chosen do little harm, and the corrected robot is the one that predicts.
 #[test]
 fn a_rigid_robot_stays_as_it_is() {
-    let made =
-        Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+    let made = Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let options = CalibrationOptions::default();
     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
     let found = calibration.correction.as_deref().unwrap();
     let geometry = calibration.accuracy.held_out.unwrap().calibrated.position_mm().mean;
     let corrected = mean_mm(&found.errors(&made.data, &calibration.held_out_rows));
-    println!(
-        "held out {geometry:.4} -> {corrected:.4} mm by {:?} of {} tried",
-        found.sizes,
-        found.tried.len()
-    );
+    println!("held out {geometry:.4} -> {corrected:.4} mm by {:?} of {} tried", found.sizes, found.tried.len());
     // One session: the mean over sessions is 1 % worse at most.
     assert!(corrected < 1.1 * geometry, "{geometry} {corrected}");
 }
@@ -222,12 +214,8 @@ fn what_is_planted_is_found_and_nothing_else() {
                     CompliantDirections::Tilting => Corrections::Auto,
                     CompliantDirections::All => Corrections::All,
                 };
-                let options = CalibrationOptions {
-                    held_out: Some(0.0),
-                    diagnose: false,
-                    corrections,
-                    ..Default::default()
-                };
+                let options =
+                    CalibrationOptions { held_out: Some(0.0), diagnose: false, corrections, ..Default::default() };
                 let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                 let found = calibration.correction.as_ref().unwrap();
                 let missed = |robot: &Robot, estimate: &Estimate| {
@@ -247,11 +235,7 @@ fn what_is_planted_is_found_and_nothing_else() {
             })
             .collect();
         let mean = |k: usize| ratios.iter().map(|it| it[k]).sum::<f64>() / ratios.len() as f64;
-        println!(
-            "{words}, {count} poses: {:.3} of the oracle's error, {:.3} of geometry's",
-            mean(0),
-            mean(1)
-        );
+        println!("{words}, {count} poses: {:.3} of the oracle's error, {:.3} of geometry's", mean(0), mean(1));
         // 200 sessions have 1.01 and 1.00 without planted effects, 1.03 to 1.12 otherwise; a dozen scatter by some 0.06.
         assert!(mean(0) < most, "{words}");
     }
@@ -266,8 +250,7 @@ fn the_direction_of_gravity_is_found() {
     for (seed, gravity) in [(1, tilted), (2, tilted), (3, tilted), (4, wall)] {
         let drawn = Simulation { terms, gravity, count: 80, seed, ..Simulation::default() };
         let made = drawn.run(&elbow(), SessionKind::POSE).unwrap();
-        let options =
-            CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
+        let options = CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
         let found = calibration.correction.as_ref().unwrap();
         let direction = found.robot.gravity.as_ref().unwrap().direction;
@@ -283,10 +266,8 @@ fn the_direction_of_gravity_is_found() {
 #[test]
 fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
     for seed in trials(5).seeds() {
-        let made =
-            Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
-        let options =
-            CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
+        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
+        let options = CalibrationOptions { gravity: GravityDirection::Found, ..CalibrationOptions::default() };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
         let correction = found.correction.as_ref().unwrap();
         println!("{:?}", correction.doubt);
@@ -392,8 +373,8 @@ fn frames_along_the_axes_change_no_correction() {
     for (k, joint) in other.joints.iter_mut().enumerate() {
         joint.frame.translation += joint.screw.direction() * (0.1 + 0.2 * k as f64);
     }
-    let [one, two] = [&robot, &other]
-        .map(|it| CorrectionModel::new(it, -Vector3::z(), &[true; 6], CorrectionExtent::default()));
+    let [one, two] =
+        [&robot, &other].map(|it| CorrectionModel::new(it, -Vector3::z(), &[true; 6], CorrectionExtent::default()));
     let (a, b) = (one.robot.gravity.unwrap(), two.robot.gravity.unwrap());
     let of_weights = a.weights.iter().zip(&b.weights).map(|(a, b)| (a.place - b.place).norm());
     let of_axes = a.axes.iter().zip(&b.axes).map(|(a, b)| (a.1 - b.1).norm());
@@ -413,8 +394,7 @@ fn a_freed_term_is_fitted_once() {
     let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
     let name = TermKind::Sine.with_number(2);
     let third = found.model.places[2];
-    let own: Vec<&JointTerm> =
-        found.robot.terms.iter().filter(|it| (it.joint, it.term) == (third, name)).collect();
+    let own: Vec<&JointTerm> = found.robot.terms.iter().filter(|it| (it.joint, it.term) == (third, name)).collect();
     println!("{own:?}");
     assert!(own.len() == 1 && (own[0].coefficient - 2e-4).abs() < 1e-4);
     assert!(found.model.terms().all(|it| it != (third, name)));
@@ -442,16 +422,14 @@ fn effects_are_what_predictions_lose_without_them() {
         let apart: Vec<Vector3<f64>> = rows
             .iter()
             .map(|&row| {
-                let [a, b] =
-                    [&found.robot, &without].map(|it| it.forward_kinematics(data.readings(row as usize)));
+                let [a, b] = [&found.robot, &without].map(|it| it.forward_kinematics(data.readings(row as usize)));
                 // The base's axes in place of the device's: lengths are the same.
                 a.translation - b.translation
             })
             .collect();
         let mean = apart.iter().sum::<Vector3<f64>>() / apart.len() as f64;
         // The mean is taken in the device's axes, which are fixed to the base.
-        let moved =
-            (apart.iter().map(|it| (it - mean).norm_squared()).sum::<f64>() / apart.len() as f64).sqrt();
+        let moved = (apart.iter().map(|it| (it - mean).norm_squared()).sum::<f64>() / apart.len() as f64).sqrt();
         println!("{} {:?}: {:.3e} m, said {:.3e}", effect.joint, effect.group, moved, effect.effect_m);
         // First order in turns of a milliradian.
         assert!((effect.effect_m / moved - 1.0).abs() < 1e-2, "{effect:?} {moved:e}");
@@ -500,9 +478,7 @@ fn corrections_that_cannot_be_are_refused() {
         let options = CalibrationOptions { corrections, blocks, ..CalibrationOptions::default() };
         calibrate(&robot, &data, &options).unwrap_err().to_string()
     };
-    for (group, column) in
-        [("backlash", "approach_JOINT"), ("payload", "payload"), ("factors", "temperature")]
-    {
+    for (group, column) in [("backlash", "approach_JOINT"), ("payload", "payload"), ("factors", "temperature")] {
         let found = refused(group, &[]);
         assert!(found.contains(&format!("found {group} among")) && found.contains(column), "{found}");
     }

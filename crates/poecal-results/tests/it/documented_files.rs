@@ -63,8 +63,7 @@ fn the_row_of_three_reflectors_gives_a_point_for_each_seen() {
     assert_eq!(targets, [0, 1, 2, 0, 2]);
     assert_eq!(file.data.readings(0)[2], 1.25);
     assert!(
-        (file.data.observations[0].stated.get(poecal_model::measurement::Quantity::Position).unwrap() - 3e-5)
-            .abs()
+        (file.data.observations[0].stated.get(poecal_model::measurement::Quantity::Position).unwrap() - 3e-5).abs()
             < 1e-19
     );
     assert_eq!(file.data.ids, ["1", "1", "1", "2", "2"]);
@@ -77,8 +76,7 @@ fn the_mapping_of_the_validation_is_one() {
 
 #[test]
 fn the_documented_urdf_turns_and_slides() {
-    let urdf =
-        UrdfDocument::parse(blocks("Robot models", "xml")[0], "turning_slide.urdf", &Default::default());
+    let urdf = UrdfDocument::parse(blocks("Robot models", "xml")[0], "turning_slide.urdf", &Default::default());
     let tip = urdf.unwrap().robot().forward_kinematics(&[std::f64::consts::FRAC_PI_2, 0.25]);
     assert!((tip.translation - Vector3::new(0.0, 0.35, 0.45)).norm() < 1e-15);
     assert!((tip.rotation.column(2) + Vector3::z()).norm() < 1e-15);
@@ -101,19 +99,14 @@ fn both_documented_dh_tables_are_the_same_arm() {
     assert_eq!(standard.reading_names(), modified.reading_names());
     let difference = Difference::from_robots(&standard, &modified, 100);
     assert!(difference.is_within(1e-14, 1e-14), "{difference:?}");
-    assert!(
-        (standard.home.translation - Vector3::new(0.445, 0.0, 0.99)).norm() < 1e-14,
-        "{:?}",
-        standard.home
-    );
+    assert!((standard.home.translation - Vector3::new(0.445, 0.0, 0.99)).norm() < 1e-14, "{:?}", standard.home);
 }
 
 #[test]
 fn a_documented_dh_table_has_a_fixed_pose_between_its_rows() {
     let robot = robot_toml::parse(blocks("Robot models", "toml")[3], "cranked.toml").unwrap();
     let (q1, q2) = (0.7, -0.4);
-    let turned =
-        |axis: usize, angle: f64| Pose::new(poecal_arm::lie::rotation::about(axis, angle), Vector3::zeros());
+    let turned = |axis: usize, angle: f64| Pose::new(poecal_arm::lie::rotation::about(axis, angle), Vector3::zeros());
     let moved = |x, y, z| Pose::from_translation(Vector3::new(x, y, z));
     let expected = turned(2, q1)
         * moved(0.0, 0.0, 0.4)
@@ -132,10 +125,7 @@ fn results_have_the_documented_columns_and_keys() {
     let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
-    assert_eq!(
-        Residuals::from_calibration(&made.data, &calibration).text().lines().next().unwrap(),
-        documented
-    );
+    assert_eq!(Residuals::from_calibration(&made.data, &calibration).text().lines().next().unwrap(), documented);
     assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 28));
 
     let inputs = Inputs::default();
@@ -153,10 +143,7 @@ fn results_have_the_documented_columns_and_keys() {
         }
     }
     let keys = file.as_object().unwrap().keys();
-    assert!(
-        keys.clone().all(|key| known.contains(&key.as_str())),
-        "{keys:?} has a key that is not documented"
-    );
+    assert!(keys.clone().all(|key| known.contains(&key.as_str())), "{keys:?} has a key that is not documented");
 }
 
 #[test]

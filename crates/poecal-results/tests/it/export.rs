@@ -54,14 +54,8 @@ fn perturb_robot(robot: &Robot, seed: u64) -> Robot {
 }
 
 fn robots() -> Vec<Robot> {
-    let kinds: [fn(u64) -> Robot; 6] = [
-        |_| ur_like(),
-        |_| elbow(),
-        |_| scara(),
-        |_| gantry(),
-        |_| seven_axis(),
-        |seed| random_chain(6, seed),
-    ];
+    let kinds: [fn(u64) -> Robot; 6] =
+        [|_| ur_like(), |_| elbow(), |_| scara(), |_| gantry(), |_| seven_axis(), |seed| random_chain(6, seed)];
     (0..50).map(|seed| perturb_robot(&kinds[seed as usize % kinds.len()](seed), seed)).collect()
 }
 
@@ -106,10 +100,8 @@ fn by_table(text: &str, q: &[f64]) -> M {
         } else {
             d += q
         }
-        let (joint, link) = (
-            about(2, theta) * translation(0.0, 0.0, d),
-            translation(of("a_m"), 0.0, 0.0) * about(0, of("alpha_rad")),
-        );
+        let (joint, link) =
+            (about(2, theta) * translation(0.0, 0.0, d), translation(of("a_m"), 0.0, 0.0) * about(0, of("alpha_rad")));
         found *= match (file["convention"].as_str().unwrap(), row["row"].as_str().unwrap()) {
             ("modified", _) => about(0, of("alpha_rad")) * translation(of("a_m"), 0.0, 0.0) * joint,
             (_, "hayati") => {
@@ -259,10 +251,7 @@ fn files_of_makers() {
     assert!(found < 1e-9, "{found:e}");
     assert!(of(&six, ExportFormat::Ur, None).unwrap().notes[0].contains("--hash"));
     assert!(
-        of(&seven_axis(), ExportFormat::Ur, None)
-            .unwrap_err()
-            .to_string()
-            .contains("found 7 joints, expected the 6")
+        of(&seven_axis(), ExportFormat::Ur, None).unwrap_err().to_string().contains("found 7 joints, expected the 6")
     );
     let seven = perturb_robot(&seven_axis(), 4);
     let franka = of(&seven, ExportFormat::Franka, None).unwrap();
@@ -307,9 +296,8 @@ fn offsets_state_what_remains() {
     };
     let own: Value = serde_json::from_str(&with(100, 0).unwrap().text).unwrap();
     assert_eq!(own["joint2"]["homing_offset"].as_i64().unwrap(), 100 + ticks as i64);
-    let refused = |found: poecal_numerics::error::Result<poecal_results::export::ExportedRobot>| {
-        found.unwrap_err().to_string()
-    };
+    let refused =
+        |found: poecal_numerics::error::Result<poecal_results::export::ExportedRobot>| found.unwrap_err().to_string();
     assert!(refused(with(0, 1)).contains("found drive_mode 1 of motor `joint1`, expected 0"));
     for homing in [2048, i64::MIN, i64::MAX] {
         assert!(refused(with(homing, 0)).contains("expected at most 2047"));
@@ -323,25 +311,18 @@ fn offsets_state_what_remains() {
 fn names_of_all_kinds() {
     let mut robot = perturb_robot(&elbow(), 5);
     (robot.base_name, robot.tip_name) = ("world".to_owned(), "joint6_link".to_owned());
-    for (joint, name) in
-        robot.joints.iter_mut().zip(["base", "a: b", "it's \"x\"", "gelenk\u{e4}", "yes", "joint6"])
-    {
+    for (joint, name) in robot.joints.iter_mut().zip(["base", "a: b", "it's \"x\"", "gelenk\u{e4}", "yes", "joint6"]) {
         (joint.name, joint.reading.name) = (name.to_owned(), name.to_owned());
     }
     let of = |format| export(&model(&robot), format, &ExportOptions::default()).unwrap();
     for format in [ExportFormat::Mjcf, ExportFormat::Sdf] {
         let found = of(format);
-        assert!(
-            !found.text.contains("name=\"world\"") && found.text.contains("name=\"world_\""),
-            "{}",
-            found.text
-        );
+        assert!(!found.text.contains("name=\"world\"") && found.text.contains("name=\"world_\""), "{}", found.text);
         assert!(found.notes[0].contains("`world` is `world_` there"), "{}", found.notes[0]);
     }
     let twice = of(ExportFormat::Sdf).text.matches("name=\"joint6_link\"").count();
     assert_eq!(twice, 1);
-    for format in
-        [ExportFormat::Origins, ExportFormat::Csv, ExportFormat::Poe, ExportFormat::Hayati, ExportFormat::Usd]
+    for format in [ExportFormat::Origins, ExportFormat::Csv, ExportFormat::Poe, ExportFormat::Hayati, ExportFormat::Usd]
     {
         of(format);
     }
@@ -362,8 +343,7 @@ fn corrected_robots_are_geometry_and_a_file_beside() {
         coefficient: 1e-3,
     });
     for format in ExportFormat::ALL {
-        let of_calibrations =
-            [ExportFormat::Pal, ExportFormat::Lerobot, ExportFormat::Offsets, ExportFormat::Tf];
+        let of_calibrations = [ExportFormat::Pal, ExportFormat::Lerobot, ExportFormat::Offsets, ExportFormat::Tf];
         let needs_calibration = of_calibrations.contains(&format);
         if needs_calibration || format == ExportFormat::Franka {
             continue;

@@ -54,8 +54,7 @@ fn forward_kinematics_agrees_with_pinocchio() {
         for (configuration, readings) in expected.configurations.iter().zip(&readings) {
             for tip in [robot.forward_kinematics(readings), together.next().unwrap()] {
                 let rotation = Matrix3::from_fn(|row, column| configuration.rotation[row][column]);
-                own.0 =
-                    larger_or_nan(own.0, (tip.translation - Vector3::from(configuration.position_m)).norm());
+                own.0 = larger_or_nan(own.0, (tip.translation - Vector3::from(configuration.position_m)).norm());
                 own.1 = larger_or_nan(own.1, (tip.rotation - rotation).norm());
             }
         }
@@ -63,10 +62,7 @@ fn forward_kinematics_agrees_with_pinocchio() {
         println!("{:20} {:.1e} m, {:.1e} in the rotation matrix", expected.urdf, own.0, own.1);
         largest = (larger_or_nan(largest.0, own.0), larger_or_nan(largest.1, own.1));
     }
-    println!(
-        "largest difference from Pinocchio {}: {:.1e} m, {:.1e}",
-        reference.pinocchio, largest.0, largest.1
-    );
+    println!("largest difference from Pinocchio {}: {:.1e} m, {:.1e}", reference.pinocchio, largest.0, largest.1);
     assert!(largest.0 < TOLERANCE && largest.1 < TOLERANCE);
 }
 
@@ -74,8 +70,7 @@ fn forward_kinematics_agrees_with_pinocchio() {
 fn the_two_elbow_models_are_one_robot() {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow");
     let selection = ChainSelection::default();
-    let read =
-        |name| poecal_results::model::Model::read(format!("{examples}/{name}"), &selection).unwrap().robot;
+    let read = |name| poecal_results::model::Model::read(format!("{examples}/{name}"), &selection).unwrap().robot;
     let (urdf, toml) = (read("robot.urdf"), read("robot.toml"));
     assert_eq!((&urdf.name, &urdf.base_name, &urdf.tip_name), (&toml.name, &toml.base_name, &toml.tip_name));
     let readings = [0.3, -0.9, 1.2, -2.0, 0.7, 4.0];

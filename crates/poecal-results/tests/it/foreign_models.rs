@@ -98,8 +98,7 @@ fn sdf_is_read_around_comments_and_through_frames() {
     for word in ["true", "1", "True", " TRUE"] {
         let degrees = of(&format!("<pose degrees='{word}'>1 2 3 90 0 0</pose>"), "b", "");
         let radians = of("<pose>1 2 3 1.5707963267948966 0 0</pose>", "b", "");
-        let rotation =
-            |text: &str| read(text, "m.sdf", Some("b")).unwrap().robot.forward_kinematics(&[0.3]).rotation;
+        let rotation = |text: &str| read(text, "m.sdf", Some("b")).unwrap().robot.forward_kinematics(&[0.3]).rotation;
         assert!((rotation(&degrees) - rotation(&radians)).norm() < 1e-12, "{word}");
     }
     // The joint turns about the frame's axis, and the link is not at the frame.
@@ -128,8 +127,7 @@ fn very_large_models_end_soon() {
         "<sdf version='1.9'><model name='m'><link name='l0'/>{chain}<joint name='j' type='revolute'><parent>l0</parent><child>l19999</child></joint></model></sdf>"
     );
     let _ = read(&chain, "m.sdf", None);
-    let bodies =
-        format!("<mujoco><worldbody>{}</worldbody></mujoco>", nested(20_000, "<body><joint/>", "</body>"));
+    let bodies = format!("<mujoco><worldbody>{}</worldbody></mujoco>", nested(20_000, "<body><joint/>", "</body>"));
     assert!(read(&bodies, "m.xml", None).unwrap_err().contains(too_deep));
     let classes: String = (0..20_000).map(|k| format!("<default class='c{k}'>")).collect();
     let classes = mjcf(&(classes + &"</default>".repeat(20_000)), "", "");
@@ -222,11 +220,13 @@ fn bad_yaml_gets_one_sentence_each() {
     check("arm.yaml", &cases);
 }
 
-const TABLE: &str = "[DH]\na = [0, -0.6, -0.5, 0, 0, 0]\nd = [0.2, 0, 0, 0.2, 0.1, 0.1]\nalpha = [1.57, 0, 0, 1.57, -1.57, 0]\n";
+const TABLE: &str =
+    "[DH]\na = [0, -0.6, -0.5, 0, 0, 0]\nd = [0.2, 0, 0, 0.2, 0.1, 0.1]\nalpha = [1.57, 0, 0, 1.57, -1.57, 0]\n";
 
 #[test]
 fn bad_controller_files_get_one_sentence_each() {
-    let expected = "expected a = [...], d = [...] and alpha = [...] of six numbers in [DH], as in the controller's urcontrol.conf";
+    let expected =
+        "expected a = [...], d = [...] and alpha = [...] of six numbers in [DH], as in the controller's urcontrol.conf";
     let missing = format!("arm.conf: found no `a` in [DH], {expected}");
     let status = format!("{TABLE}[mounting]\ndelta_a = [0,0,0,0,0,0]\ncalibration_status = 0 # none\n");
     #[rustfmt::skip]

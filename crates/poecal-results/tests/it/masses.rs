@@ -5,9 +5,7 @@ use poecal_arm::lie::Pose;
 use poecal_calibrate::{CalibrationOptions, Corrections, calibrate};
 use poecal_formats::robot_toml;
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
-use poecal_model::robot::{
-    Body, Gravity, JointTerm, Mass, Moments, Robot, Situation, Statics, Term, TermKind,
-};
+use poecal_model::robot::{Body, Gravity, JointTerm, Mass, Moments, Robot, Situation, Statics, Term, TermKind};
 use poecal_model::simulate::{SessionKind, Simulation, elbow};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 
@@ -31,11 +29,8 @@ const HEAVY: &str = r#"<robot name="heavy">
 /// The masses of a URDF are those that its chain moves, come back from TOML, and their moments are the derivatives of their potential.
 #[test]
 fn masses_of_a_urdf_pull_as_their_potential_says() {
-    let selection = ChainSelection {
-        base_link: Some("base".to_owned()),
-        tip_link: Some("tool".to_owned()),
-        ..Default::default()
-    };
+    let selection =
+        ChainSelection { base_link: Some("base".to_owned()), tip_link: Some("tool".to_owned()), ..Default::default() };
     let robot = |text: &str| UrdfDocument::parse(text, "heavy.urdf", &selection).unwrap().robot().clone();
     let heavy = robot(HEAVY);
     let found: Vec<(usize, [f64; 3], f64)> =
@@ -54,14 +49,12 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
     let toml = robot_toml::write(&heavy);
     // Numbers are written without their rounding errors.
     let again = robot_toml::parse(&toml, "heavy.toml").unwrap().masses;
-    let is_same =
-        |(a, b): (&Mass, &Mass)| (a.body, a.kg) == (b.body, b.kg) && (a.place - b.place).norm() < 1e-15;
+    let is_same = |(a, b): (&Mass, &Mass)| (a.body, a.kg) == (b.body, b.kg) && (a.place - b.place).norm() < 1e-15;
     assert!(again.len() == 3 && again.iter().zip(&heavy.masses).all(is_same), "{toml}");
     let error = robot_toml::parse(&toml.replace("kg = 3", "kg = -3"), "heavy.toml").unwrap_err().to_string();
     assert!(error.contains("found the mass -3, expected kilograms above 0"), "{error}");
 
-    let error =
-        robot_toml::parse(&toml.replace("on = \"shoulder\"", "on = \"base\""), "heavy.toml").unwrap_err();
+    let error = robot_toml::parse(&toml.replace("on = \"shoulder\"", "on = \"base\""), "heavy.toml").unwrap_err();
     assert!(error.to_string().contains("found a mass on the base"), "{error}");
     // They follow joint offsets that become screws.
     let mut off = heavy.clone();
@@ -76,8 +69,7 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
     let statics = Statics::new(&pulled).unwrap();
     let potential = |readings: &[f64; 2]| {
         let of_mass = |mass: &Mass| {
-            let end =
-                Robot { tip: Some(mass.body), home: Pose::from_translation(mass.place), ..heavy.clone() };
+            let end = Robot { tip: Some(mass.body), home: Pose::from_translation(mass.place), ..heavy.clone() };
             mass.kg * end.forward_kinematics(readings).translation.dot(&down)
         };
         heavy.masses.iter().map(of_mass).sum::<f64>()
@@ -92,8 +84,7 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
         less[joint] -= step;
         let slope = (potential(&more) - potential(&less)) / (2.0 * step);
         let situation = Situation { values: &at, moments: Some(&moments), factors: &[] };
-        let moment =
-            situation.basis(joint, TermKind::Masses.with_number(0)) * statics.mass_levers_kg_m()[joint];
+        let moment = situation.basis(joint, TermKind::Masses.with_number(0)) * statics.mass_levers_kg_m()[joint];
         println!("{moment:.9} kg m, by differences {slope:.9}");
         // Differences of order 2 over 1e-5.
         assert!((moment - slope).abs() < 1e-8);
@@ -110,23 +101,14 @@ fn masses_are_kept_with_the_corrected_model() {
     };
     nominal.masses = vec![mass(1, 9.0), mass(2, 6.0), mass(4, 2.0)];
     let Ok(Corrections::Sizes(terms)) = "sag=1e-3".parse() else { panic!("no sizes") };
-    let made =
-        Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, SessionKind::POSE).unwrap();
+    let made = Simulation { terms, count: 60, ..Simulation::default() }.run(&nominal, SessionKind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let found = calibration.correction.as_ref().unwrap();
-    assert!(
-        found
-            .robot
-            .terms
-            .iter()
-            .any(|it| it.term == TermKind::Masses.with_number(0) && it.coefficient != 0.0)
-    );
+    assert!(found.robot.terms.iter().any(|it| it.term == TermKind::Masses.with_number(0) && it.coefficient != 0.0));
     let text = CalibrationFile::new(&calibration, &made.data, Inputs::default()).to_text().unwrap();
-    let read =
-        CalibrationFile::parse(&text, "calibration.json").unwrap().corrected_file().unwrap().robot().unwrap();
+    let read = CalibrationFile::parse(&text, "calibration.json").unwrap().corrected_file().unwrap().robot().unwrap();
     let apart = (0..made.data.len()).map(|row| {
-        let [a, b] =
-            [&found.robot, &read].map(|it| it.forward_kinematics(made.data.readings(row)).translation);
+        let [a, b] = [&found.robot, &read].map(|it| it.forward_kinematics(made.data.readings(row)).translation);
         (a - b).norm()
     });
     let apart = apart.fold(0.0, f64::max);
@@ -134,8 +116,8 @@ fn masses_are_kept_with_the_corrected_model() {
     assert!(apart < 1e-14);
     for wrong in ["\"mass_kg\": -6.0", "\"mass_kg\": 1e300"] {
         let text = text.replace("\"mass_kg\": 6.0", wrong);
-        let refused = CalibrationFile::parse(&text, "calibration.json")
-            .and_then(|file| file.corrected_file().unwrap().robot());
+        let refused =
+            CalibrationFile::parse(&text, "calibration.json").and_then(|file| file.corrected_file().unwrap().robot());
         assert!(refused.unwrap_err().to_string().contains("expected above 0 and at most 1e6"));
     }
 }

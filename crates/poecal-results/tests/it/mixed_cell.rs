@@ -66,12 +66,10 @@ fn text(actual: &Robot, rows: usize, generator: &mut ChaCha8Rng) -> String {
 fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instrument() {
     let (actual, nominal) = robots();
     let mut generator = ChaCha8Rng::seed_from_u64(4);
-    let file =
-        parse(&text(&actual, 450, &mut generator), "cell.csv", &nominal, &ReadOptions::default()).unwrap();
+    let file = parse(&text(&actual, 450, &mut generator), "cell.csv", &nominal, &ReadOptions::default()).unwrap();
     // No row is refused: every one is in the fit or held out, and the sums over rows have only one path, that of the kernels.
     assert_eq!(file.data.len(), 450);
-    let found =
-        calibrate(&nominal, &file.data, &CalibrationOptions { move_tip: true, ..geometry() }).unwrap();
+    let found = calibrate(&nominal, &file.data, &CalibrationOptions { move_tip: true, ..geometry() }).unwrap();
     assert_eq!(found.fit_rows.len() + found.held_out_rows.len(), 450);
     let held_out = found.accuracy.held_out.unwrap();
     assert_eq!(held_out.count, found.held_out_rows.len());
@@ -108,8 +106,7 @@ fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instr
     let base_from_tracker = found.base_from_device;
     let worst = (0..300).map(|_| {
         let readings = configurations.random(&mut generator);
-        let predicted =
-            base_from_tracker.inverse().act(&found.robot.forward_kinematics(&readings).translation);
+        let predicted = base_from_tracker.inverse().act(&found.robot.forward_kinematics(&readings).translation);
         (predicted - tracker.act(&actual.forward_kinematics(&readings).translation)).norm()
     });
     let worst = worst.fold(0.0, f64::max);
@@ -122,18 +119,14 @@ fn distances_alone_give_a_robot_that_predicts_distances() {
     let (actual, nominal) = robots();
     let mut generator = ChaCha8Rng::seed_from_u64(9);
     let rows = text(&actual, 900, &mut generator);
-    let wire: Vec<&str> =
-        rows.lines().filter(|line| !line.contains("tracker") && !line.contains("camera")).collect();
+    let wire: Vec<&str> = rows.lines().filter(|line| !line.contains("tracker") && !line.contains("camera")).collect();
     let file = parse(&wire.join("\n"), "wire.csv", &nominal, &ReadOptions::default()).unwrap();
     assert_eq!(file.data.len(), 300);
     let found = calibrate(&nominal, &file.data, &geometry()).unwrap();
     let held_out = found.accuracy.held_out.unwrap();
     let [registered, calibrated] =
         [&held_out.registered, &held_out.calibrated].map(|it| it.get(Quantity::Distance).unwrap().rms);
-    println!(
-        "registered {registered:.3}, calibrated {calibrated:.3} mm, rank {}",
-        found.identifiability.rank
-    );
+    println!("registered {registered:.3}, calibrated {calibrated:.3} mm, rank {}", found.identifiability.rank);
     assert!(calibrated < 1.3e3 * WIRE_M && registered > 5.0 * calibrated);
     // 24 of the axes and 3 of the point, less the turns about the anchor, which no distance determines.
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (24, 24));

@@ -25,10 +25,9 @@ fn every_reference_urdf_converts_both_ways() {
             let converted = convert(&model, to).unwrap();
             let again = match to {
                 // The chain of the new file is unique again, even if a leader stands beside it.
-                ModelFormat::Urdf => UrdfDocument::parse(&converted.text, &path, &ChainSelection::default())
-                    .unwrap()
-                    .robot()
-                    .clone(),
+                ModelFormat::Urdf => {
+                    UrdfDocument::parse(&converted.text, &path, &ChainSelection::default()).unwrap().robot().clone()
+                }
                 ModelFormat::Toml => robot_toml::parse(&converted.text, &path).unwrap(),
             };
             assert_eq!((&again.base_name, &again.tip_name), (&model.robot.base_name, &model.robot.tip_name));
@@ -74,8 +73,7 @@ fn dh_tables_in_both_conventions_agree_with_the_product_of_their_matrices() {
         let tip = robot.forward_kinematics(&[q1, q2, q3]);
         assert!((tip.translation - product.translation).norm() < 1e-14);
         assert!((tip.rotation - product.rotation).norm() < 1e-14);
-        let limits: Vec<_> =
-            robot.joints.iter().map(|joint| joint.limits.map(|l| (l.lower, l.upper))).collect();
+        let limits: Vec<_> = robot.joints.iter().map(|joint| joint.limits.map(|l| (l.lower, l.upper))).collect();
         let right_angle = std::f64::consts::FRAC_PI_2;
         assert_eq!(limits, [None, Some((-0.01, 0.02)), Some((-right_angle, right_angle))]);
         convert(&toml_model(robot), ModelFormat::Urdf).unwrap();

@@ -66,8 +66,7 @@ fn no_zero_that_is_hidden_has_a_deviation_and_those_of_others_hold() {
         let robot = &robots[seed as usize % robots.len()];
         let mut generator = ChaCha8Rng::seed_from_u64(seed + 40);
         let count = robot.joints.len();
-        let chosen: Vec<usize> =
-            (0..count).filter(|_| random::uniform_number(&mut generator) < 0.6).collect();
+        let chosen: Vec<usize> = (0..count).filter(|_| random::uniform_number(&mut generator) < 0.6).collect();
         let chosen = if chosen.is_empty() { vec![count - 1] } else { chosen };
         let mut zeros = vec![0.0; count];
         for &joint in &chosen {

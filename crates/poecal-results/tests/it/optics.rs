@@ -42,8 +42,7 @@ fn read_with(made: &SimulatedPictures, change: impl Fn(&mut Pictures)) -> Datase
 
 fn calibrate_pictures(made: &SimulatedPictures, data: &Dataset, free: &[&str]) -> (Calibration, Dataset) {
     let free = free.iter().map(|it| (*it).to_owned()).collect();
-    let options =
-        CalibrationOptions { blocks: BlockChoice { free, ..BlockChoice::default() }, ..Default::default() };
+    let options = CalibrationOptions { blocks: BlockChoice { free, ..BlockChoice::default() }, ..Default::default() };
     let done = calibrate_repairing(&made.nominal, data, &options, &mut |_| {}).unwrap();
     (done.calibration, done.data.into_owned())
 }
@@ -73,8 +72,7 @@ fn a_lens_is_found_with_the_arm() {
         let wrong = |pictures: &mut Pictures| {
             let lens = distorted_lens();
             let [fx, fy] = lens.focal_px.map(|it| 1.03 * it);
-            pictures.cameras[0].lens =
-                Lens { size_px: lens.size_px, ..Lens::pinhole([fx, fy], [970.0, 590.0]) };
+            pictures.cameras[0].lens = Lens { size_px: lens.size_px, ..Lens::pinhole([fx, fy], [970.0, 590.0]) };
         };
         let data = read_with(&made, wrong);
         let (held, _) = calibrate_pictures(&made, &data, &[]);
@@ -172,19 +170,12 @@ fn clean_sessions_free_nothing() {
 /// Unknowns that the pictures do not determine are named, and none for clean pictures.
 #[test]
 fn what_pictures_cannot_determine_is_named() {
-    type Views = (
-        &'static str,
-        &'static [&'static str],
-        &'static [&'static str],
-        fn(PictureSimulation) -> PictureSimulation,
-    );
+    type Views =
+        (&'static str, &'static [&'static str], &'static [&'static str], fn(PictureSimulation) -> PictureSimulation);
     const PARALLEL: &str = "parallel to the image";
     let kinds: [Views; 6] = [
         ("clean", &["lens"], &[], |it| it),
-        ("parallel", &[], &[PARALLEL, "about one axis only"], |it| PictureSimulation {
-            tilt_rad: [0.0, 0.03],
-            ..it
-        }),
+        ("parallel", &[], &[PARALLEL, "about one axis only"], |it| PictureSimulation { tilt_rad: [0.0, 0.03], ..it }),
         ("one axis", &[], &["about one axis only"], |it| PictureSimulation {
             turns: false,
             tilt_rad: [0.0, 0.7],
@@ -245,8 +236,7 @@ fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
             let ray = truth.ray(&pixel).unwrap();
             let point = ray * (1e-3 * map.distance_mm / ray.z);
             let mean = |squares: f64| squares / (places.len() * data.len()) as f64;
-            for (picture, (exact, row)) in
-                data.pictures.all.iter().zip(made.camera_from_board.iter().zip(&found.poses))
+            for (picture, (exact, row)) in data.pictures.all.iter().zip(made.camera_from_board.iter().zip(&found.poses))
             {
                 let on_board = exact.inverse().act(&point);
                 let seen = lens.pixel(&picture.directed_measurement(row).act(&on_board)).unwrap();

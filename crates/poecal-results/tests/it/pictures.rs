@@ -265,8 +265,7 @@ fn bounds_hold_on_pictures_that_were_not_fitted() {
     let sessions = trials(16);
     let part = 1.0 / sessions.count as f64;
     for millis in [0.0, 0.1, 0.5] {
-        let common =
-            CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, ..CommonError::default() };
+        let common = CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, ..CommonError::default() };
         let (mut inside, mut ratio) = ([0.0; 2], 0.0);
         for seed in sessions.seeds() {
             let session = session(100 + seed);

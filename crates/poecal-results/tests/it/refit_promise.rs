@@ -52,15 +52,12 @@ fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
                     .into_par_iter()
                     .map(|seed| judge_refit(&robot, kind, 4000 + seed, refit_tool))
                     .collect();
-                let mean = |of: &dyn Fn(&Judgement) -> f64| {
-                    judgements.iter().map(of).sum::<f64>() / fits.count as f64
-                };
+                let mean = |of: &dyn Fn(&Judgement) -> f64| judgements.iter().map(of).sum::<f64>() / fits.count as f64;
                 let share = mean(&|it| it.promised.unwrap().position_mm().inside_bound95);
                 let squares = mean(&|it| it.calibrated.position_mm().rms.powi(2));
                 let expected = mean(&|it| it.promised.unwrap().position_mm().expected_rms.powi(2));
                 let ratio = (squares / expected).sqrt();
-                let turns =
-                    mean(&|it| it.promised.unwrap().rotation_deg().map_or(0.95, |part| part.inside_bound95));
+                let turns = mean(&|it| it.promised.unwrap().rotation_deg().map_or(0.95, |part| part.inside_bound95));
                 println!(
                     "{:10} {:5} tool refitted: {refit_tool:5}, {} fits: {:.1} % inside, rotations {:.1} %, error {ratio:.3} times the expected one",
                     robot.name,
@@ -91,9 +88,7 @@ fn another_robot_breaks_the_promise_after_a_refit_too() {
     let share = judgement.promised.unwrap().position_mm().inside_bound95;
     println!("{:.1} % inside", 100.0 * share);
     assert!(share < 0.2);
-    assert!(
-        judgement.falls_short(Level::Good).unwrap().contains("inside their 95 % bounds, 80 % are required")
-    );
+    assert!(judgement.falls_short(Level::Good).unwrap().contains("inside their 95 % bounds, 80 % are required"));
     let own = file.judge(&made.data, true, true).unwrap();
     assert_eq!(own.falls_short(Level::Good), None);
     assert_eq!(own.falls_short(Level::InsideSampledRange), None);

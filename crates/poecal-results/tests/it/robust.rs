@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 use poecal_calibrate::{
-    Calibration, CalibrationOptions, Level, Loss, Repairs, RobustLoss, calibrate, nominal_estimate,
-    row_influence,
+    Calibration, CalibrationOptions, Level, Loss, Repairs, RobustLoss, calibrate, nominal_estimate, row_influence,
 };
 use poecal_fit::parameters::screw_axes;
 use poecal_fit::problem::Problem;
@@ -12,8 +11,8 @@ use poecal_fit::state::{Estimate, PackedValues, Session};
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Noise, Quantity, Set};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::{
-    GrossErrors, SessionKind, Simulation, SimulationResult, elbow, gantry, random, random_configuration,
-    scara, seven_axis,
+    GrossErrors, SessionKind, Simulation, SimulationResult, elbow, gantry, random, random_configuration, scara,
+    seven_axis,
 };
 use poecal_numerics::solve::LeastSquares;
 use poecal_results::calibration_file::{CalibrationFile, Inputs, OutlierSet};
@@ -45,12 +44,8 @@ fn spoil_rows(made: &SimulationResult, share: f64, seed: u64) -> (Dataset, Vec<u
 }
 
 fn fit(robot: &Robot, data: &Dataset, robust: RobustLoss) -> Calibration {
-    calibrate(
-        robot,
-        data,
-        &CalibrationOptions { held_out: Some(0.0), robust, diagnose: false, ..Default::default() },
-    )
-    .unwrap()
+    calibrate(robot, data, &CalibrationOptions { held_out: Some(0.0), robust, diagnose: false, ..Default::default() })
+        .unwrap()
 }
 
 /// Root mean square position error of an estimate, metres.
@@ -61,22 +56,15 @@ fn rms_m(robot: &Robot, data: &Dataset, rows: &[u32], estimate: &Estimate) -> f6
 }
 
 /// Mean squared held-out error with and without gross errors, and the numbers of gross, found, clean and falsely suspected rows.
-fn compare(
-    robot: &Robot,
-    kind: SessionKind,
-    share: f64,
-    robust: RobustLoss,
-    seed: u64,
-) -> ([f64; 2], [usize; 4]) {
+fn compare(robot: &Robot, kind: SessionKind, share: f64, robust: RobustLoss, seed: u64) -> ([f64; 2], [usize; 4]) {
     let (simulation, made) = session(robot, kind, seed);
     let judging = simulation.held_out(&made, kind, 200).unwrap();
     let (data, gross) = spoil_rows(&made, share, seed);
     let found = fit(robot, &data, robust);
     let suspects: Vec<u32> = found.robustness.suspects().collect();
     let right = suspects.iter().filter(|row| gross.binary_search(row).is_ok()).count();
-    let error = |estimate: &Calibration| {
-        rms_m(robot, &judging, &judging.all_rows(), &estimate.models.calibrated).powi(2)
-    };
+    let error =
+        |estimate: &Calibration| rms_m(robot, &judging, &judging.all_rows(), &estimate.models.calibrated).powi(2);
     let errors = [error(&fit(robot, &made.data, RobustLoss::Off)), error(&found)];
     (errors, [gross.len(), right, data.len() - gross.len(), suspects.len() - right])
 }
@@ -87,10 +75,8 @@ fn over_sessions(share: f64, robust: RobustLoss, sessions: Trials) -> (f64, [usi
     let mut total = [0; 4];
     for robot in robots() {
         for kind in KINDS {
-            let all: Vec<_> = (sessions.seeds())
-                .into_par_iter()
-                .map(|seed| compare(&robot, kind, share, robust, seed))
-                .collect();
+            let all: Vec<_> =
+                (sessions.seeds()).into_par_iter().map(|seed| compare(&robot, kind, share, robust, seed)).collect();
             let [clean, with] = [0, 1].map(|k| all.iter().map(|(errors, _)| errors[k]).sum::<f64>());
             let ratio = (with / clean).sqrt();
             println!("{} {}, {share}: {ratio:.3} times the clean error", robot.name, kind.word());
@@ -184,8 +170,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
                 let (data, gross) = spoil_rows(&made, 0.3, seed);
                 let packed = PackedValues::from_dataset(&robot, &data);
                 let rows = data.all_rows();
-                let clean: Vec<u32> =
-                    rows.iter().copied().filter(|row| gross.binary_search(row).is_err()).collect();
+                let clean: Vec<u32> = rows.iter().copied().filter(|row| gross.binary_search(row).is_err()).collect();
                 let registration = Registration {
                     session: Session::new(&robot, &data, &packed, true),
                     rows: &rows,
@@ -201,11 +186,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
             }
         }
     }
-    println!(
-        "clean rows missed by at most: squares {:.2} mm, robust {:.3} mm",
-        worst[0] * 1e3,
-        worst[1] * 1e3
-    );
+    println!("clean rows missed by at most: squares {:.2} mm, robust {:.3} mm", worst[0] * 1e3, worst[1] * 1e3);
     // Noise is 0.087 mm a row; sums of distances let through a little more than noise.
     assert!(worst[1] < 2e-4);
 }
@@ -292,26 +273,20 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
         row.source.line = line;
     }
     let found = calibrate(&elbow(), &data, &geometry()).unwrap();
-    let inputs =
-        Inputs { model: "elbow.toml".into(), measurements: vec!["session.csv".into()], ..Inputs::default() };
+    let inputs = Inputs { model: "elbow.toml".into(), measurements: vec!["session.csv".into()], ..Inputs::default() };
     let file = CalibrationFile::new(&found, &data, inputs);
     let mut rows: Vec<u32> = file.outliers.iter().map(|outlier| outlier.row - 2).collect();
     rows.sort_unstable();
     assert_eq!(rows, gross);
     let held_out = file.outliers.iter().filter(|outlier| outlier.set == OutlierSet::HeldOut).count();
     println!("{} suspected, {held_out} of them held out; {:?}", rows.len(), found.warnings);
-    assert_eq!(
-        (file.robust.suspected.training, file.robust.suspected.held_out),
-        (rows.len() - held_out, held_out)
-    );
+    assert_eq!((file.robust.suspected.training, file.robust.suspected.held_out), (rows.len() - held_out, held_out));
     assert!(held_out > 0 && file.outliers.iter().all(|o| o.file == "session.csv" && o.weight == 0.0));
     assert!(file.outliers.is_sorted_by(|a, b| a.studentized >= b.studentized));
     let all = file.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     let rest = file.robust.without_suspected.held_out.unwrap();
     println!("held out: {all:.3} mm with them, {:.3} mm without", rest.calibrated.position_mm().rms);
-    assert!(
-        rest.count + held_out == found.held_out_rows.len() && all > 20.0 * rest.calibrated.position_mm().rms
-    );
+    assert!(rest.count + held_out == found.held_out_rows.len() && all > 20.0 * rest.calibrated.position_mm().rms);
     let read = CalibrationFile::parse(&file.to_text().unwrap(), "f").unwrap();
     assert_eq!((read.outliers.len(), read.robust.loss), (file.outliers.len(), Some(Loss::Tukey)));
 }
@@ -352,11 +327,8 @@ fn what_all_targets_of_a_configuration_show_is_the_robot() {
         .map(|seed| {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let actual = Simulation::default().perturb(&robot, &mut generator);
-            let places = [
-                Vector3::new(0.05, 0.0, 0.1),
-                Vector3::new(-0.03, 0.06, 0.08),
-                Vector3::new(0.0, -0.05, 0.12),
-            ];
+            let places =
+                [Vector3::new(0.05, 0.0, 0.1), Vector3::new(-0.03, 0.06, 0.08), Vector3::new(0.0, -0.05, 0.12)];
             let mut data = Dataset::new(robot.reading_names());
             for _ in 0..24 {
                 let readings = random_configuration(&robot, &mut generator);
@@ -413,9 +385,7 @@ fn rows_that_alone_tell_something_are_kept() {
                     .map(|_| {
                         let readings = random_configuration(&robot, &mut generator);
                         let at = found.robot.forward_kinematics(&readings).translation;
-                        let seen = found
-                            .base_from_device
-                            .act(&actual.forward_kinematics(&real(&readings)).translation);
+                        let seen = found.base_from_device.act(&actual.forward_kinematics(&real(&readings)).translation);
                         (at - seen).norm_squared()
                     })
                     .sum();

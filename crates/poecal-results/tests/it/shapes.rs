@@ -61,11 +61,7 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     assert_eq!(of, expected);
     assert_eq!(found.notes.len(), 3, "{:?}", found.notes);
     assert!(found.notes[0].contains("`package://elsewhere/arm.stl` was not found"), "{:?}", found.notes);
-    assert!(
-        found.notes[1].contains("`meshes/broken.stl` is not drawn: found no triangles"),
-        "{:?}",
-        found.notes
-    );
+    assert!(found.notes[1].contains("`meshes/broken.stl` is not drawn: found no triangles"), "{:?}", found.notes);
     assert!(
         found.notes[2].contains("`meshes/large.stl` is not drawn: it is 100 m long, the arm 0.4"),
         "{:?}",
@@ -78,16 +74,12 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     // Shapes of moving links stay with the frames of their joints.
     let shape = &found.shapes[2];
     let (nominal, calibrated) = (&calibration.nominal.joints[1].frame, &calibration.robot.joints[1].frame);
-    let apart =
-        (nominal.inverse() * shape.nominal_pose).distance_and_angle(&(calibrated.inverse() * shape.pose));
+    let apart = (nominal.inverse() * shape.nominal_pose).distance_and_angle(&(calibrated.inverse() * shape.pose));
     let moved = shape.nominal_pose.distance_and_angle(&shape.pose);
     println!("shapes stand on their joints within {apart:?}, which the calibration moved by {moved:?}");
     // Rounding of frames about 1 m.
     assert!(apart.0 < 1e-12 && apart.1 < 1e-7 && moved.0 > 1e-6, "{apart:?}, {moved:?}");
-    assert_eq!(
-        (Shapes::from_calibration(&file).shapes.len(), Shapes::from_calibration(&file).notes.len()),
-        (0, 0)
-    );
+    assert_eq!((Shapes::from_calibration(&file).shapes.len(), Shapes::from_calibration(&file).notes.len()), (0, 0));
 
     // Beside the calibration, in the absence of the URDF.
     fs::rename(cell.join("robot"), cell.join("out")).unwrap();
@@ -108,10 +100,7 @@ fn a_box_is_drawn_without_any_file() {
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let mut file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
     let found = Shapes::from_calibration(&file).shapes;
-    assert_eq!(
-        (found.len(), found[0].link.as_str(), found[0].form),
-        (1, "upper", ShapeForm::Box([0.4, 0.05, 0.05]))
-    );
+    assert_eq!((found.len(), found[0].link.as_str(), found[0].form), (1, "upper", ShapeForm::Box([0.4, 0.05, 0.05])));
 
     // A robot that is no URDF has no shapes.
     file.inputs.urdf = None;

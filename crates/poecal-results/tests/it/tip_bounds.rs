@@ -40,9 +40,8 @@ fn bounds_of_a_tip_beside_the_reflector_hold() {
             // In the base frame: with the device at an unknown pose, the zero of the last joint is as that of a base that the axes determine.
             let simulation = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
             let mut generator = ChaCha8Rng::seed_from_u64(500 + seed);
-            let seen = simulation
-                .measure(&at_reflector(&nominal), at_reflector(&actual), kind, &mut generator)
-                .unwrap();
+            let seen =
+                simulation.measure(&at_reflector(&nominal), at_reflector(&actual), kind, &mut generator).unwrap();
             let options = CalibrationOptions {
                 corrections: Corrections::Off,
                 frame: DeviceFrameKnowledge::Base,
@@ -51,8 +50,7 @@ fn bounds_of_a_tip_beside_the_reflector_hold() {
             let calibration = calibrate(&nominal, &seen.data, &options).unwrap();
             let file = CalibrationFile::new(&calibration, &seen.data, Inputs::default());
             let (uncertainty, targets) = file.uncertainty(&[None]).unwrap();
-            let readings: Vec<f64> =
-                (0..30).flat_map(|_| random_configuration(&nominal, &mut generator)).collect();
+            let readings: Vec<f64> = (0..30).flat_map(|_| random_configuration(&nominal, &mut generator)).collect();
             let robot = file.robot().unwrap();
             let packed = PackedValues::new(&robot, &readings, nominal.joints.len());
             let bounds = uncertainty.predictions(&packed, targets[0]);

@@ -52,13 +52,7 @@ impl Cell {
     }
 
     /// A visit to configurations of the first one, by another robot, with the device anywhere or where it was.
-    fn visit(
-        &self,
-        actual: &Robot,
-        chosen: &Witnesses,
-        known: Option<&Pose>,
-        generator: &mut ChaCha8Rng,
-    ) -> Dataset {
+    fn visit(&self, actual: &Robot, chosen: &Witnesses, known: Option<&Pose>, generator: &mut ChaCha8Rng) -> Dataset {
         let anywhere = Pose::new(random::rotation(generator), random::direction(generator) * 2.0);
         let device = known.copied().unwrap_or(anywhere);
         let mut data = Dataset::new(self.first.reading_names().to_vec());
@@ -167,18 +161,10 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
             // Three standard errors of the numbers drawn beside the required 93 to 98 %.
             let (found, count) = (seen.found as f64 / seen.visits as f64, seen.visits as f64);
             let error = |share: f64| 3.0 * (share * (1.0 - share) / count).sqrt();
-            assert!(
-                found > 0.93 - error(0.93) && found < 0.98 + error(0.98),
-                "{}: found {found}",
-                seen.joint
-            );
+            assert!(found > 0.93 - error(0.93) && found < 0.98 + error(0.98), "{}: found {found}", seen.joint);
             let named = seen.among as f64 / seen.found as f64;
             let named_at_twice = seen.among_at_twice as f64 / count;
-            assert!(
-                named.min(named_at_twice) > 0.98 - error(0.98),
-                "{}: named {named}, {named_at_twice}",
-                seen.joint
-            );
+            assert!(named.min(named_at_twice) > 0.98 - error(0.98), "{}: named {named}, {named_at_twice}", seen.joint);
             all.visits += seen.visits;
             all.found += seen.found;
             all.right += seen.right;
@@ -252,8 +238,7 @@ fn one_joint_is_calibrated_anew() {
     let earlier = Baseline { data: &cell.first, is_own: true };
     let sources = RecalibrationSources::default();
     let repaired =
-        recalibrate(&cell.file, &data, Some(earlier), &options, ("joint4", RepairedPart::Zero), sources)
-            .unwrap();
+        recalibrate(&cell.file, &data, Some(earlier), &options, ("joint4", RepairedPart::Zero), sources).unwrap();
     let (size, sigma) = repaired.repair.size();
     println!("zero of joint 4 by {:.4} ± {:.4} deg, truth 0.2", size.to_degrees(), sigma.to_degrees());
     assert!((size - by).abs() < 4.0 * sigma && sigma < 0.02f64.to_radians());
@@ -289,8 +274,7 @@ fn other_configurations_are_judged_by_the_model() {
     let part = |rows: &[u32]| {
         let mut data = Dataset::new(made.data.reading_names().to_vec());
         for &row in rows {
-            data.push_observation(made.data.readings(row as usize), made.data.observations[row as usize])
-                .unwrap();
+            data.push_observation(made.data.readings(row as usize), made.data.observations[row as usize]).unwrap();
         }
         data.targets = made.data.targets.clone();
         data
@@ -401,5 +385,12 @@ fn several_zeros_are_all_named_and_an_explanation_that_is_not_complete_says_so()
     let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
     println!("{:?} {:?}", found.explanation, found.notes);
     assert_eq!(found.state, RobotCondition::Changed);
-    assert!(found.notes.iter().any(|it| it.contains("the explanation is not complete") || it.contains("no change of one joint")), "{:?}", found.notes);
+    assert!(
+        found
+            .notes
+            .iter()
+            .any(|it| it.contains("the explanation is not complete") || it.contains("no change of one joint")),
+        "{:?}",
+        found.notes
+    );
 }

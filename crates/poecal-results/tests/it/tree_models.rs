@@ -45,12 +45,8 @@ fn the_tree_of_named_links_moves_as_each_chain_does() {
     robot.check_tree().unwrap();
     let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
     let arm = |side: &str| (1..=6).map(move |k| format!("{side}{k}")).collect::<Vec<_>>();
-    let expected = [
-        vec!["torso1".to_owned(), "torso2".to_owned()],
-        arm("left"),
-        vec!["head_yaw".to_owned()],
-        arm("right"),
-    ];
+    let expected =
+        [vec!["torso1".to_owned(), "torso2".to_owned()], arm("left"), vec!["head_yaw".to_owned()], arm("right")];
     assert_eq!(names, expected.concat());
     assert_eq!((robot.body_before(8), robot.body_before(9)), (Body::Link(1), Body::Link(1)));
     assert_eq!((robot.tip_name.as_str(), robot.tip_body()), ("left_hand", Body::Link(7)));
@@ -74,10 +70,8 @@ fn the_tree_of_named_links_moves_as_each_chain_does() {
                 .iter()
                 .map(|name| readings[names.iter().position(|known| known == name).unwrap()])
                 .collect();
-            let (a, b) = (
-                robot.with_tip_at(mount).forward_kinematics(&readings),
-                chain.robot().forward_kinematics(&of_chain),
-            );
+            let (a, b) =
+                (robot.with_tip_at(mount).forward_kinematics(&readings), chain.robot().forward_kinematics(&of_chain));
             assert!(
                 (a.translation - b.translation).norm() < 1e-14 && (a.rotation - b.rotation).norm() < 1e-14,
                 "{link}"
@@ -121,8 +115,7 @@ fn the_tip_is_the_first_target_that_moves_and_mistakes_get_one_sentence() {
         refuse_selection(&still)
             .contains("found no moving joint between base link `base_link` and the links of the named")
     );
-    let alone =
-        ChainSelection { instruments: pairs(&[("eyes", "head_camera")]), ..ChainSelection::default() };
+    let alone = ChainSelection { instruments: pairs(&[("eyes", "head_camera")]), ..ChainSelection::default() };
     assert!(refuse_selection(&alone).contains("found 5 end links"), "{}", refuse_selection(&alone));
 }
 
@@ -130,9 +123,8 @@ fn the_tip_is_the_first_target_that_moves_and_mistakes_get_one_sentence() {
 fn a_mapping_names_links_too_and_contradictions_are_refused() {
     let text = "[mount.instruments]\neyes = \"head_camera\"\n[mount.targets]\nleft = \"left_hand\"\n";
     let map = ColumnMap::parse(text, "map.toml").unwrap();
-    let merged = map
-        .mounts(ChainSelection { targets: pairs(&[("right", "right_hand")]), ..ChainSelection::default() })
-        .unwrap();
+    let merged =
+        map.mounts(ChainSelection { targets: pairs(&[("right", "right_hand")]), ..ChainSelection::default() }).unwrap();
     assert_eq!(merged.instruments, pairs(&[("eyes", "head_camera")]));
     assert_eq!(merged.targets, pairs(&[("right", "right_hand"), ("left", "left_hand")]));
     let error = map
@@ -173,10 +165,7 @@ fn branches_are_written_into_the_urdf_and_into_new_models() {
         assert_alike(&robot, again.robot(), "patched");
         // The hands have fixed joints of their own; other joints stand on the torso.
         assert_eq!(patched.tip_link, "left_hand");
-        assert_eq!(
-            patched.selection.instruments,
-            pairs(&[("eyes", "head_camera"), ("chest", "torso_calibrated")])
-        );
+        assert_eq!(patched.selection.instruments, pairs(&[("eyes", "head_camera"), ("chest", "torso_calibrated")]));
         assert_eq!(patched.notes.len(), 1, "{:?}", patched.notes);
 
         let toml = robot_toml::write(&robot);
@@ -217,17 +206,14 @@ fn a_toml_model_says_on_which_link_everything_stands() {
     let turned = [0.0, std::f64::consts::FRAC_PI_2];
     let ball = robot.with_tip_at(&robot.mounted[0]).forward_kinematics(&turned);
     assert!((ball.translation - Vector3::new(-0.2, 0.1, 0.0)).norm() < 1e-15, "{}", ball.translation);
-    let error =
-        |parent: &str, on: &str| robot_toml::parse(&text(parent, on), "y.toml").unwrap_err().to_string();
+    let error = |parent: &str, on: &str| robot_toml::parse(&text(parent, on), "y.toml").unwrap_err().to_string();
     assert_eq!(
         error("b", "b"),
         "y.toml:8:68: `parent` of joint `b` is joint `b`, which comes after it, expected one of the joints before: put it after its parent"
     );
     let unknown = error("base", "arm");
     assert!(
-        unknown.starts_with(
-            "y.toml:14:6: `on` of target `ball` is `arm`, expected a joint of this model or `base`, "
-        ),
+        unknown.starts_with("y.toml:14:6: `on` of target `ball` is `arm`, expected a joint of this model or `base`, "),
         "{unknown}"
     );
     let dh = "poecal_robot = 1\nname = \"d\"\nlength_unit = \"m\"\nangle_unit = \"rad\"\nconvention = \"standard_dh\"\n\
@@ -298,12 +284,7 @@ fn offsets_follow_the_branches() {
     for mount in robot.instruments.iter().chain(&robot.mounted) {
         let readings = random_configuration(&robot, &mut generator);
         let shifted: Vec<f64> = readings.iter().zip(&offsets).map(|(a, b)| a + b).collect();
-        let same = equivalent
-            .instruments
-            .iter()
-            .chain(&equivalent.mounted)
-            .find(|it| it.name == mount.name)
-            .unwrap();
+        let same = equivalent.instruments.iter().chain(&equivalent.mounted).find(|it| it.name == mount.name).unwrap();
         let (a, b) = (
             equivalent.with_tip_at(same).forward_kinematics(&readings),
             robot.with_tip_at(mount).forward_kinematics(&shifted),

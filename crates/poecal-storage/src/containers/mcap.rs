@@ -97,9 +97,7 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
         }
         sum = sum.saturating_add(unpacked);
         // Such a file is refused: the rest may take minutes to unpack.
-        if sum > ResourceLimit::Bag.value()
-            || io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest
-        {
+        if sum > ResourceLimit::Bag.value() || io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest {
             break;
         }
     }
@@ -178,8 +176,7 @@ fn chunk(
     times: &mut (u64, u64),
 ) -> Result<(), String> {
     let mut fields = ByteFields(data);
-    let head =
-        |fields: &mut ByteFields<'_>| Some(((fields.u64()?, fields.u64()?), fields.u64()?, fields.u32()?));
+    let head = |fields: &mut ByteFields<'_>| Some(((fields.u64()?, fields.u64()?), fields.u64()?, fields.u32()?));
     let (stated, size, crc) = head(&mut fields).ok_or(SHORT)?;
     *times = stated;
     let how = text(&mut fields).ok_or(SHORT)?;

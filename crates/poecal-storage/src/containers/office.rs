@@ -100,12 +100,7 @@ impl<'b> Container<'b> {
 }
 
 /// The bytes of a chain of sectors, up to a size; `None` if a sector is missing, or the chain is longer than the number of sectors.
-fn follow_chain<'s>(
-    next: &[u32],
-    start: u32,
-    size: u64,
-    sector: impl Fn(u32) -> Option<&'s [u8]>,
-) -> Option<Vec<u8>> {
+fn follow_chain<'s>(next: &[u32], start: u32, size: u64, sector: impl Fn(u32) -> Option<&'s [u8]>) -> Option<Vec<u8>> {
     let (mut found, mut at) = (Vec::new(), start);
     for _ in 0..=next.len() {
         if at >= MARKS || found.len() as u64 >= size {

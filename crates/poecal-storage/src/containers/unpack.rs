@@ -120,8 +120,6 @@ mod tests {
                 let _ = unpack(&flipped, how, 400_000, &mut into);
             }
         }
-        assert!(
-            unpack(&zstd, "brotli", 400_000, &mut into).unwrap_err().contains("the compression `brotli`")
-        );
+        assert!(unpack(&zstd, "brotli", 400_000, &mut into).unwrap_err().contains("the compression `brotli`"));
     }
 }

@@ -88,8 +88,7 @@ fn attributes(path: &Path) -> io::Result<Vec<(Vec<u8>, Vec<u8>)>> {
         Err(error) if is_unknown(&error) => 0,
         listed => listed?,
     };
-    let names =
-        names.get(..length).unwrap_or_default().split(|byte| *byte == 0).filter(|name| !name.is_empty());
+    let names = names.get(..length).unwrap_or_default().split(|byte| *byte == 0).filter(|name| !name.is_empty());
     let valued = names.map(|name| {
         let mut value = vec![0; LARGEST];
         let length = rustix::fs::getxattr(path, OsStr::from_bytes(name), &mut value[..])?;
@@ -176,9 +175,8 @@ impl Disk for SystemDisk {
     }
 
     fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
-        let mut names: Vec<OsString> = fs::read_dir(folder)?
-            .map(|entry| entry.map(|entry| entry.file_name()))
-            .collect::<Result<_, _>>()?;
+        let mut names: Vec<OsString> =
+            fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.file_name())).collect::<Result<_, _>>()?;
         names.sort();
         Ok(names)
     }
@@ -296,8 +294,7 @@ impl Disk for SystemDisk {
 
     fn hold(&self, path: &Path, holder: &str) -> io::Result<LockOutcome> {
         for _ in 0..ATTEMPTS {
-            let mut file =
-                OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)?;
+            let mut file = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)?;
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
@@ -320,10 +317,7 @@ impl Disk for SystemDisk {
             file.rewind()?;
             file.write_all(holder.as_bytes())?;
             let before = Some(before.trim().to_owned()).filter(|it| !it.is_empty());
-            return Ok(LockOutcome::Mine {
-                lock: Box::new(LockedFile { file, path: path.to_owned() }),
-                before,
-            });
+            return Ok(LockOutcome::Mine { lock: Box::new(LockedFile { file, path: path.to_owned() }), before });
         }
         Ok(LockOutcome::Other(String::new()))
     }

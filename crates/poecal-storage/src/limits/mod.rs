@@ -38,11 +38,8 @@ impl ResourceLimit {
     pub fn sentence(self, found: &str) -> String {
         let row = self.row();
         let most = amount(self.value(), row.unit);
-        let higher = if row.highest > row.usual {
-            format!(", or allow more by --limit {}=N", row.name)
-        } else {
-            String::new()
-        };
+        let higher =
+            if row.highest > row.usual { format!(", or allow more by --limit {}=N", row.name) } else { String::new() };
         format!("found {found}, expected at most {most} (limit `{}`): {}{higher}", row.name, row.advice)
     }
 
@@ -58,11 +55,7 @@ impl ResourceLimit {
     /// # Errors
     /// The [`sentence`](ResourceLimit::sentence) as an error of [`ErrorKind::File`] without a position.
     pub fn refuse(self, count: u64, found: impl Display) -> Result<()> {
-        if count <= self.value() {
-            Ok(())
-        } else {
-            Err(ErrorKind::File.error(self.sentence(&found.to_string())))
-        }
+        if count <= self.value() { Ok(()) } else { Err(ErrorKind::File.error(self.sentence(&found.to_string()))) }
     }
 
     /// The limit of a name.
@@ -141,8 +134,7 @@ static OF_PROCESS: [AtomicU64; COUNT] = {
 /// The limits of this thread.
 #[must_use]
 pub fn current_limits() -> ResourceLimits {
-    HERE.get()
-        .unwrap_or_else(|| ResourceLimits(std::array::from_fn(|at| OF_PROCESS[at].load(Ordering::Relaxed))))
+    HERE.get().unwrap_or_else(|| ResourceLimits(std::array::from_fn(|at| OF_PROCESS[at].load(Ordering::Relaxed))))
 }
 
 /// Sets a limit of the whole process, except for threads at work under others ([`run_with_limits`]).
@@ -195,10 +187,7 @@ pub fn parse(text: &str) -> Result<(ResourceLimit, u64)> {
     let highest = limit.row().highest;
     match count {
         Some(count) if (1..=highest).contains(&count) => Ok((limit, count)),
-        Some(_) => refuse(format!(
-            "found `{text}`, expected a number from 1 to {}",
-            amount(highest, limit.row().unit)
-        )),
+        Some(_) => refuse(format!("found `{text}`, expected a number from 1 to {}", amount(highest, limit.row().unit))),
         None => refuse(format!("found `{text}`, expected {example}")),
     }
 }

@@ -121,14 +121,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "move it away: a new one begins",
     ),
     row(ResourceLimit::Table, "table", (4096 * MIB, ANY), BYTES, "a table (CSV)", "split the file"),
-    row(
-        ResourceLimit::Rows,
-        "rows",
-        (1_000_000, 100_000_000),
-        "rows",
-        "measurements of one file",
-        "split the file",
-    ),
+    row(ResourceLimit::Rows, "rows", (1_000_000, 100_000_000), "rows", "measurements of one file", "split the file"),
     row(
         ResourceLimit::Columns,
         "columns",

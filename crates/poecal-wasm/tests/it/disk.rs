@@ -8,9 +8,7 @@ use poecal_wasm::MemoryDisk;
 
 fn disk() -> MemoryDisk {
     let disk = MemoryDisk::new(b"input".to_vec());
-    for (path, text) in
-        [("a/one", "1"), ("a/two", "2"), ("a/in/three", "3"), ("a.b", "beside"), ("b/four", "4")]
-    {
+    for (path, text) in [("a/one", "1"), ("a/two", "2"), ("a/in/three", "3"), ("a.b", "beside"), ("b/four", "4")] {
         disk.put(Path::new(path), text.into()).unwrap();
     }
     disk
@@ -70,10 +68,7 @@ fn folders_move_and_are_exchanged_with_all_below() {
     assert_eq!(text(&disk, "c/moved/in/three"), "3");
     assert_eq!(kind(disk.exchange(Path::new("c"), Path::new("c/moved"))), Some(ErrorKind::InvalidInput));
     let (written, gone) = disk.changes();
-    assert_eq!(
-        written.keys().collect::<Vec<_>>(),
-        ["c/four", "c/moved/in/three", "c/moved/one", "c/moved/two"]
-    );
+    assert_eq!(written.keys().collect::<Vec<_>>(), ["c/four", "c/moved/in/three", "c/moved/one", "c/moved/two"]);
     assert_eq!(gone, ["a/in/three", "a/one", "a/two", "b/four"]);
 }
 

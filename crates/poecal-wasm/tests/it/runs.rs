@@ -19,10 +19,7 @@ fn a_calibration_writes_its_files_and_leaves_no_others() {
     let answer = run(request("calibrate robot.urdf points.csv --out out", &[]));
     assert_eq!((answer.said.code, answer.said.err.as_str()), (0, ""));
     let names: Vec<&String> = answer.written.keys().collect();
-    assert_eq!(
-        names,
-        ["out/calibrated.urdf", "out/calibration.json", "out/report.html", "out/residuals.csv"]
-    );
+    assert_eq!(names, ["out/calibrated.urdf", "out/calibration.json", "out/report.html", "out/residuals.csv"]);
     assert!(answer.removed.is_empty());
 }
 
@@ -38,11 +35,7 @@ fn a_refusal_writes_nothing() {
 fn files_of_one_path_are_refused() {
     let answer = run(request("check robot.urdf points.csv", &[("./robot.urdf", "other")]));
     assert_eq!(answer.said.code, 2);
-    assert!(
-        answer.said.err.contains("./robot.urdf: the file cannot be put on the disk"),
-        "{}",
-        answer.said.err
-    );
+    assert!(answer.said.err.contains("./robot.urdf: the file cannot be put on the disk"), "{}", answer.said.err);
 }
 
 #[test]

@@ -14,9 +14,7 @@ use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
 use crate::information::Information;
-use crate::session::{
-    PictureSession, calibrate_session, delivered_poses, deviations, rms, session, true_pose,
-};
+use crate::session::{PictureSession, calibrate_session, delivered_poses, deviations, rms, session, true_pose};
 
 /// One position of the camera for each seed, with three errors of the configurations; each again by the rule of independent corners.
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
@@ -90,11 +88,7 @@ fn by_rule(session: &PictureSession, deviations: &[Vector6<f64>]) -> [f64; 2] {
 }
 
 /// Deviations of poses from the true ones, each with an error of its configuration.
-fn deviations_with_own(
-    session: &PictureSession,
-    poses: &[Pose],
-    generator: &mut ChaCha8Rng,
-) -> Vec<Vector6<f64>> {
+fn deviations_with_own(session: &PictureSession, poses: &[Pose], generator: &mut ChaCha8Rng) -> Vec<Vector6<f64>> {
     let PictureSession { made, others, simulation, .. } = session;
     let of = |(row, pose): (usize, &Pose)| {
         let shift = random::normal_vector(generator) * simulation.common.shift_m;

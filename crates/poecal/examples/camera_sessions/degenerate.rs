@@ -26,11 +26,7 @@ fn lens(focal_px: f64, size_px: [u32; 2]) -> Lens {
 const KINDS: [SessionCase; 8] = [
     SessionCase { name: "clean", is_free: false, of: |it| it },
     SessionCase { name: "clean, free lens", is_free: true, of: |it| it },
-    SessionCase {
-        name: "parallel",
-        is_free: false,
-        of: |it| PictureSimulation { tilt_rad: [0.0, 0.03], ..it },
-    },
+    SessionCase { name: "parallel", is_free: false, of: |it| PictureSimulation { tilt_rad: [0.0, 0.03], ..it } },
     SessionCase {
         name: "one axis",
         is_free: false,
@@ -71,26 +67,21 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
 
 fn line(seed: u64, kind: &SessionCase) -> Result<Value, Error> {
     let usual = simulation(seed.is_multiple_of(2), 0.0, 7000 + seed);
-    let usual =
-        (kind.of)(PictureSimulation { session: Simulation { count: COUNT, ..usual.session }, ..usual });
+    let usual = (kind.of)(PictureSimulation { session: Simulation { count: COUNT, ..usual.session }, ..usual });
     let other = Simulation { seed: usual.session.seed + 1_000_000, ..usual.session };
-    let made = usual
-        .run(&elbow())
-        .or_else(|_| PictureSimulation { session: other, ..usual.clone() }.run(&elbow()))?;
+    let made = usual.run(&elbow()).or_else(|_| PictureSimulation { session: other, ..usual.clone() }.run(&elbow()))?;
     let camera = Camera { is_guessed: false, ..made.data.pictures.cameras[0].clone() };
     let mut data = rebuild_pictures(&made.data, 0..COUNT, (&[camera], &made.data.pictures.boards))?;
     let start = settle_pictures(&mut data, &made.nominal).all();
     let free = if kind.is_free { vec!["lens".to_owned()] } else { Vec::new() };
-    let options = CalibrationOptions {
-        blocks: BlockChoice { free, ..BlockChoice::default() },
-        ..CalibrationOptions::default()
-    };
-    let mut line = json!({ "task": "degenerate", "seed": seed, "kind": kind.name, "in_hand": usual.in_hand, "start": start });
+    let options =
+        CalibrationOptions { blocks: BlockChoice { free, ..BlockChoice::default() }, ..CalibrationOptions::default() };
+    let mut line =
+        json!({ "task": "degenerate", "seed": seed, "kind": kind.name, "in_hand": usual.in_hand, "start": start });
     match calibrate_session(&made.nominal, &data, &options) {
         Ok((calibration, _)) => {
             line["said"] = json!(calibration.warnings);
-            line["determined"] =
-                json!([calibration.identifiability.rank, calibration.identifiability.parameters]);
+            line["determined"] = json!([calibration.identifiability.rank, calibration.identifiability.parameters]);
             line["level"] = json!(calibration.verdict.level.words());
             line["reasons"] = json!(format!("{:?}", calibration.verdict));
         }

@@ -26,24 +26,26 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     hold_out_thirds(&mut data);
     let said = settle_pictures(&mut data, &made.nominal).all();
     let blocks = BlockChoice { fix: vec!["joints".to_owned()], ..BlockChoice::default() };
-    let (calibration, fitted) = calibrate_session(
-        &made.nominal,
-        &data,
-        &CalibrationOptions { blocks, ..CalibrationOptions::default() },
-    )?;
+    let (calibration, fitted) =
+        calibrate_session(&made.nominal, &data, &CalibrationOptions { blocks, ..CalibrationOptions::default() })?;
     let lens = simulation.lens;
     let corners = |corners: &[Corner]| -> Vec<[f64; 3]> {
         corners.iter().map(|it| [f64::from(it.point), it.pixel.x, it.pixel.y]).collect()
     };
-    let rows: Vec<Value> = fitted.pictures.all.iter().map(|picture| {
-        let row = picture.row as usize;
-        let tip = made.nominal.forward_kinematics(fitted.readings(row));
-        json!({
-            "held_out": fitted.observations[row].set == Some(Set::HeldOut),
-            "tip": { "rotation": tip.rotation.transpose().as_slice(), "translation": tip.translation.as_slice() },
-            "corners": corners(&picture.corners),
+    let rows: Vec<Value> = fitted
+        .pictures
+        .all
+        .iter()
+        .map(|picture| {
+            let row = picture.row as usize;
+            let tip = made.nominal.forward_kinematics(fitted.readings(row));
+            json!({
+                "held_out": fitted.observations[row].set == Some(Set::HeldOut),
+                "tip": { "rotation": tip.rotation.transpose().as_slice(), "translation": tip.translation.as_slice() },
+                "corners": corners(&picture.corners),
+            })
         })
-    }).collect();
+        .collect();
     let px = calibration.accuracy.held_out.as_ref().and_then(|it| it.calibrated.pixels);
     Ok(vec![json!({
         "task": "kinematics", "seed": seed, "in_hand": in_hand, "start": said, "px": px.map(|it| it.rms_px), "mm": px.map(|it| it.rms_mm),

@@ -79,11 +79,7 @@ impl Arm {
     }
 
     /// Configurations in which the whole board is seen.
-    fn configurations(
-        &self,
-        count: usize,
-        generator: &mut ChaCha8Rng,
-    ) -> Option<Vec<(Vec<f64>, Vec<Corner>)>> {
+    fn configurations(&self, count: usize, generator: &mut ChaCha8Rng) -> Option<Vec<(Vec<f64>, Vec<Corner>)>> {
         let ranges = Configurations::new(&self.nominal);
         let mut found = Vec::new();
         for _ in 0..400_000 {
@@ -123,8 +119,7 @@ fn arm(seed: u64) -> Option<Arm> {
         random::normal_vector(&mut generator) * 0.02,
     );
     let depth = if in_hand { 0.25 } else { 0.45 };
-    let sight =
-        Pose::new(rotation::exp(&(random::direction(&mut generator) * 0.4)), Vector3::new(0.0, 0.0, depth));
+    let sight = Pose::new(rotation::exp(&(random::direction(&mut generator) * 0.4)), Vector3::new(0.0, 0.0, depth));
     let sight = Pose::new(sight.rotation, sight.translation - sight.rotation * middle(&board.points));
     let at = nominal.forward_kinematics(&ready) * held;
     let other = if in_hand { at * sight } else { at * sight.inverse() };
@@ -199,8 +194,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
             );
             line["level"] = json!(calibration.verdict.level.words());
             line["expected_mm"] = json!(calibration.verdict.expected_error_mm);
-            line["repairs"] =
-                json!(calibration.repairs.iter().map(|it| it.statement.clone()).collect::<Vec<_>>());
+            line["repairs"] = json!(calibration.repairs.iter().map(|it| it.statement.clone()).collect::<Vec<_>>());
         }
         Err(error) => line["refused"] = json!(error.to_string()),
     }

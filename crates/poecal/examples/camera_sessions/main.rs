@@ -33,8 +33,7 @@ fn main() {
         ("degenerate", degenerate::run),
         ("low_cost", low_cost::run),
     ];
-    let Some((_, task)) = tasks.iter().find(|(name, _)| words.first().is_some_and(|word| word == name))
-    else {
+    let Some((_, task)) = tasks.iter().find(|(name, _)| words.first().is_some_and(|word| word == name)) else {
         eprintln!("expected one of accuracy, bounds, setups, optics, kinematics, degenerate, low_cost");
         std::process::exit(2);
     };

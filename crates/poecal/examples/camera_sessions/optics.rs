@@ -12,8 +12,8 @@ use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
 use crate::session::{
-    COUNT, PictureSession, all_rows, judge_session, places, rebuild_pictures, register_deviations, rms,
-    shape, simulate_session, simulation,
+    COUNT, PictureSession, all_rows, judge_session, places, rebuild_pictures, register_deviations, rms, shape,
+    simulate_session, simulation,
 };
 
 /// The stretch of a board along x.
@@ -92,8 +92,7 @@ fn line(
 ) -> Result<Value, Error> {
     let mut data = rebuild_pictures(&session.data, 0..COUNT, given)?;
     let said = settle_pictures(&mut data, &session.made.nominal).all();
-    let blocks =
-        BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
+    let blocks = BlockChoice { free: free.iter().map(|it| (*it).to_owned()).collect(), ..BlockChoice::default() };
     let options = CalibrationOptions { blocks, ..all_rows() };
     let (calibration, data, deviations) = judge_session(session, &data, &options)?;
     let shape_m = rms(&shape(session, &deviations))[0];

@@ -141,9 +141,7 @@ impl SceneDraw {
     fn picture(&mut self, near: &[f64], ranges: &Configurations) -> Option<(Vec<f64>, Vec<Corner>)> {
         let sight = self.sight();
         let head: Vec<f64> = match self.place {
-            CameraMount::Head => {
-                (0..2).map(|_| 0.6 * random::uniform_number(&mut self.generator) - 0.3).collect()
-            }
+            CameraMount::Head => (0..2).map(|_| 0.6 * random::uniform_number(&mut self.generator) - 0.3).collect(),
             CameraMount::Hand | CameraMount::Beside => Vec::new(),
         };
         let at_zero: Vec<f64> = near.iter().copied().chain(head.iter().copied()).collect();
@@ -195,8 +193,7 @@ impl SceneDraw {
                 return None;
             }
             let noise =
-                Vector2::new(random::normal(&mut self.generator), random::normal(&mut self.generator))
-                    * NOISE_PX;
+                Vector2::new(random::normal(&mut self.generator), random::normal(&mut self.generator)) * NOISE_PX;
             corners.push(Corner { point, pixel: exact + noise, sigma_px: None, weight: 1.0, line: 0 });
         }
         Some(corners)
@@ -216,11 +213,8 @@ fn with_head(arm: &Robot, base_from_camera: &Pose, generator: &mut ChaCha8Rng) -
         (joint.limits, joint.stands_on) = (limits, stands_on);
         robot.joints.insert(arm.joints.len(), joint);
     }
-    let mount = |name: &str, body: usize| Mount {
-        name: name.to_owned(),
-        body: Body::Link(body),
-        pose: Pose::identity(),
-    };
+    let mount =
+        |name: &str, body: usize| Mount { name: name.to_owned(), body: Body::Link(body), pose: Pose::identity() };
     robot.instruments.push(mount("camera", arm.joints.len() + 1));
     robot.mounted.push(mount("board", arm.joints.len() - 1));
     robot

@@ -87,11 +87,8 @@ pub(crate) fn rebuild_pictures(
     for row in rows {
         let Picture { camera, board, image, corners, .. } = data.pictures.all[row].clone();
         let picture = Picture::new(camera, board, image, corners);
-        let added = found.push_picture(
-            data.readings(row),
-            picture,
-            (data.observations[row].set, RowLocation::default()),
-        )?;
+        let added =
+            found.push_picture(data.readings(row), picture, (data.observations[row].set, RowLocation::default()))?;
         added.map_err(|reason| Error::new(ErrorKind::Problem, reason))?;
     }
     found.settle_pixels();
@@ -231,8 +228,7 @@ pub(crate) fn whitenings(session: &PictureSession, common: CommonError) -> Vec<M
         exact.corners.iter_mut().for_each(|corner| corner.weight = 1.0);
         let pose = true_pose(made, &made.actual, data.readings(picture.row as usize));
         let seen = exact.directed_measurement(&pose);
-        let pictures =
-            poecal_model::camera::Pictures { sigma_px: simulation.noise_px, ..data.pictures.clone() };
+        let pictures = poecal_model::camera::Pictures { sigma_px: simulation.noise_px, ..data.pictures.clone() };
         let information = pictures.view(&exact).map(|view| view.information(&seen)).unwrap_or_default();
         picture_whitening(common, (&seen, information), exact.of_camera)
     };

@@ -88,8 +88,7 @@ fn handed_on(file: &Path) -> Vec<(String, String)> {
 /// The documentation above the declaration of a type, below a folder or in a file.
 fn documentation(place: &Path, name: &str) -> Option<String> {
     if place.is_dir() {
-        let mut paths: Vec<PathBuf> =
-            fs::read_dir(place).unwrap().map(|entry| entry.unwrap().path()).collect();
+        let mut paths: Vec<PathBuf> = fs::read_dir(place).unwrap().map(|entry| entry.unwrap().path()).collect();
         paths.sort();
         return paths.iter().find_map(|path| documentation(path, name));
     }

@@ -118,13 +118,10 @@ fn cited_equations_exist_in_the_section_that_is_named() {
 fn named_tests_exist() {
     let theory = fs::read_to_string(project_folder().join("docs/theory.md")).unwrap();
     let (_, table) = theory.split_once("### The paper's equations").unwrap();
-    let code: String = sources(&project_folder().join("crates"))
-        .iter()
-        .map(|path| fs::read_to_string(path).unwrap())
-        .collect();
+    let code: String =
+        sources(&project_folder().join("crates")).iter().map(|path| fs::read_to_string(path).unwrap()).collect();
     let mut named = 0;
-    for row in table.lines().take_while(|line| !line.starts_with("## ")).filter(|line| line.starts_with('|'))
-    {
+    for row in table.lines().take_while(|line| !line.starts_with("## ")).filter(|line| line.starts_with('|')) {
         let tests = row.trim_end_matches([' ', '|']).rsplit('|').next().unwrap_or_default();
         for name in tests.split('`').skip(1).step_by(2) {
             let exists = if name.contains('/') {

@@ -71,8 +71,7 @@ fn measure_case(case: &Case, noise: f64) -> (Robot, Dataset) {
     for readings in case.readings(7) {
         let mut pose = device_from_base * actual.forward_kinematics(&readings);
         pose.translation += random::normal_vector(&mut generator) * noise * usual[Quantity::Position];
-        let turn =
-            rotation::exp(&(random::normal_vector(&mut generator) * noise * usual[Quantity::Rotation]));
+        let turn = rotation::exp(&(random::normal_vector(&mut generator) * noise * usual[Quantity::Rotation]));
         pose.rotation = turn * pose.rotation;
         let measurement = if case.kind == SessionKind::POINT {
             Measurement::point(pose.translation)
@@ -124,12 +123,7 @@ fn a_calibration_says_the_same_as_what_was_foreseen() {
         let causes = |of: &Identifiability| -> Vec<(Cause, Vec<String>, usize)> {
             of.unidentifiable.iter().map(|it| (it.cause, it.joints.clone(), it.directions)).collect()
         };
-        println!(
-            "{name}: foreseen {} of {}, calibrated\n{}",
-            foreseen.rank,
-            foreseen.parameters,
-            words(found)
-        );
+        println!("{name}: foreseen {} of {}, calibrated\n{}", foreseen.rank, foreseen.parameters, words(found));
         // A direction at the limit of being determined may fall on either side, depending on the noise.
         assert!(found.rank + 1 >= foreseen.rank);
         if found.rank == foreseen.rank {
@@ -208,8 +202,7 @@ fn joints_that_stand_still_are_named_and_no_others() {
     for seed in robots.seeds() {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let robot = random_chain(2 + (seed % 8) as usize, seed);
-        let still: Vec<bool> =
-            robot.joints.iter().map(|_| random::uniform_number(&mut generator) < 0.3).collect();
+        let still: Vec<bool> = robot.joints.iter().map(|_| random::uniform_number(&mut generator) < 0.3).collect();
         let at = random_configuration(&robot, &mut generator);
         let jitter = if seed % 2 == 0 { 0.0 } else { 1.0 };
         let mut readings = Vec::new();
@@ -220,8 +213,7 @@ fn joints_that_stand_still_are_named_and_no_others() {
                     JointKind::Revolute => 3e-4,
                     JointKind::Prismatic => 1e-5,
                 };
-                *value =
-                    at[joint] + jitter * amplitude * (2.0 * random::uniform_number(&mut generator) - 1.0);
+                *value = at[joint] + jitter * amplitude * (2.0 * random::uniform_number(&mut generator) - 1.0);
             }
             readings.extend(row);
         }
@@ -230,13 +222,8 @@ fn joints_that_stand_still_are_named_and_no_others() {
         let found = identify(&robot, &readings, &session).unwrap().identifiability;
         let named = found.unidentifiable.iter().filter(|it| it.cause == Cause::StoodStill);
         let named: Vec<&String> = named.flat_map(|it| &it.joints).collect();
-        let frozen: Vec<&String> = robot
-            .joints
-            .iter()
-            .zip(&still)
-            .filter(|(_, still)| **still)
-            .map(|(joint, _)| &joint.name)
-            .collect();
+        let frozen: Vec<&String> =
+            robot.joints.iter().zip(&still).filter(|(_, still)| **still).map(|(joint, _)| &joint.name).collect();
         let told: usize = found.unidentifiable.iter().map(|it| it.directions).sum();
         assert_eq!(told, found.parameters - found.rank);
         let other = found.unidentifiable.iter().any(|it| it.cause != Cause::StoodStill);

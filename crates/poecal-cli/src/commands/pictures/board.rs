@@ -20,7 +20,9 @@ enum DrawingFormat {
 
 pub(super) fn board(arguments: &Detect, spec: &BoardSpec, console: &Console) -> Result<u8> {
     if arguments.place.out.is_none() && arguments.measured.is_none() {
-        return ErrorKind::Option.refuse("found neither --out nor --measured, expected the file to draw, --out board.pdf or --out board.svg");
+        return ErrorKind::Option.refuse(
+            "found neither --out nor --measured, expected the file to draw, --out board.pdf or --out board.svg",
+        );
     }
     let mut code = DONE;
     if let Some(out) = &arguments.place.out {
@@ -40,12 +42,8 @@ fn write_board(arguments: &Detect, (spec, out): (&BoardSpec, &Path), console: &C
         measured.correct(spec).map_err(|error| option_error("--measured", &error))?;
     }
     let sheet = PrintSheet::new(spec, &arguments.paper).map_err(|error| option_error("--print", &error))?;
-    let place = ReservedFile::reserve(
-        out,
-        ExistingFiles::from_switch(arguments.place.force),
-        &[],
-        &mut console.warner(),
-    )?;
+    let place =
+        ReservedFile::reserve(out, ExistingFiles::from_switch(arguments.place.force), &[], &mut console.warner())?;
     let text = match form {
         DrawingFormat::Svg => sheet.svg(),
         DrawingFormat::Pdf => sheet.pdf(),
@@ -60,10 +58,7 @@ fn write_board(arguments: &Detect, (spec, out): (&BoardSpec, &Path), console: &C
     let [width, height] = sheet.size_mm;
     let words = label_paragraph("written", &printable_path(out))
         + &label_paragraph("board", &describe_board(spec))
-        + &label_paragraph(
-            "page",
-            &format!("{width} x {height} mm: print it at 100 %, and check both rulers"),
-        )
+        + &label_paragraph("page", &format!("{width} x {height} mm: print it at 100 %, and check both rulers"))
         + &label_paragraph("calibrate", &format!("--markers {spec}"));
     Ok(console.say_of(&words, out))
 }
@@ -89,10 +84,8 @@ fn form(out: &Path) -> Result<DrawingFormat> {
     match extension.to_ascii_lowercase().as_str() {
         "svg" => Ok(DrawingFormat::Svg),
         "pdf" => Ok(DrawingFormat::Pdf),
-        _ => ErrorKind::Option.refuse(format!(
-            "--out: found no form in the name `{}`, expected .svg or .pdf",
-            printable_path(out)
-        )),
+        _ => ErrorKind::Option
+            .refuse(format!("--out: found no form in the name `{}`, expected .svg or .pdf", printable_path(out))),
     }
 }
 

@@ -6,8 +6,7 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use poecal_detect::{
-    BoardSpec, DetectedBoard, Detector, Gray, GrayPicture, PictureError, PictureOrientation, RejectionReason,
-    preview,
+    BoardSpec, DetectedBoard, Detector, Gray, GrayPicture, PictureError, PictureOrientation, RejectionReason, preview,
 };
 use poecal_import::board_of_file;
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -187,13 +186,12 @@ fn detect_in_file(detector: &Detector, path: &Path, name: &str, keeps: bool) -> 
         return Err(unread(ResourceLimit::Picture.exceeded_error("one picture")));
     }
     let decoded = GrayPicture::decode_up_to(&bytes, path, ResourceLimit::Pixels.value());
-    let GrayPicture { gray, turned } =
-        decoded.map_err(|PictureError { error, too_large }| match too_large {
-            Some([width, height]) => {
-                unread(ResourceLimit::Pixels.sentence(&format!("a picture of {width} x {height} pixels")))
-            }
-            None => option_error(&error),
-        })?;
+    let GrayPicture { gray, turned } = decoded.map_err(|PictureError { error, too_large }| match too_large {
+        Some([width, height]) => {
+            unread(ResourceLimit::Pixels.sentence(&format!("a picture of {width} x {height} pixels")))
+        }
+        None => option_error(&error),
+    })?;
     drop(bytes);
     let found = detector.detect(&gray);
     let size_px = [gray.width(), gray.height()];
@@ -224,11 +222,8 @@ fn first_few(names: &[String]) -> String {
 
 /// Reports the pictures that were turned, and those that are left out with the reason.
 fn warn(all: &[DetectedPicture], console: &Console) {
-    let turned: Vec<String> = all
-        .iter()
-        .filter(|it| it.turned.is_turned())
-        .map(|it| format!("{} ({})", it.name, it.turned))
-        .collect();
+    let turned: Vec<String> =
+        all.iter().filter(|it| it.turned.is_turned()).map(|it| format!("{} ({})", it.name, it.turned)).collect();
     if !turned.is_empty() {
         console.warning(format!(
             "turned {} as their files state (EXIF): {}; the lens must be that of pictures which are turned so",
@@ -239,12 +234,7 @@ fn warn(all: &[DetectedPicture], console: &Console) {
     let without: Vec<String> =
         all.iter().filter_map(|it| Some(format!("{} ({})", it.name, it.found.as_ref().err()?))).collect();
     if !without.is_empty() && without.len() < all.len() {
-        console.warning(format!(
-            "left out {} of {} pictures: {}",
-            without.len(),
-            all.len(),
-            first_few(&without)
-        ));
+        console.warning(format!("left out {} of {} pictures: {}", without.len(), all.len(), first_few(&without)));
     }
 }
 
@@ -258,12 +248,9 @@ fn no_board_error(detector: &Detector, all: &[DetectedPicture]) -> Error {
     let why: Vec<String> =
         all.iter().filter_map(|it| Some(format!("{}: {}", it.name, it.found.as_ref().err()?))).collect();
     let help = match detector.suggest(&tried) {
-        Some(other) => format!(
-            "but {} shows in {}: take --board {}",
-            other.spec,
-            pluralize(other.pictures, "picture"),
-            other.spec
-        ),
+        Some(other) => {
+            format!("but {} shows in {}: take --board {}", other.spec, pluralize(other.pictures, "picture"), other.spec)
+        }
         None => format!("nor {}: check the board, and look at the pictures", tried_too(detector.spec())),
     };
     let message = format!(
@@ -321,12 +308,7 @@ fn table(spec: &BoardSpec, all: &[DetectedPicture]) -> String {
 }
 
 /// Prints a summary and the next step.
-fn conclude(
-    spec: &BoardSpec,
-    all: &[DetectedPicture],
-    corners: usize,
-    (arguments, console): (&Detect, &Console),
-) {
+fn conclude(spec: &BoardSpec, all: &[DetectedPicture], corners: usize, (arguments, console): (&Detect, &Console)) {
     let found: Vec<&DetectedBoard> = all.iter().filter_map(|it| it.found.as_ref().ok()).collect();
     let mut sigmas: Vec<f64> = found.iter().flat_map(|it| &it.corners).map(|it| it.sigma_px).collect();
     sigmas.sort_by(f64::total_cmp);

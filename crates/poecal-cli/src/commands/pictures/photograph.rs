@@ -33,10 +33,8 @@ pub(crate) fn photograph(
     console: &Console,
 ) -> Result<u8> {
     if arguments.count > MOST {
-        return ErrorKind::Option.refuse(format!(
-            "found --count {} with --camera, expected at most {MOST} pictures",
-            arguments.count
-        ));
+        return ErrorKind::Option
+            .refuse(format!("found --count {} with --camera, expected at most {MOST} pictures", arguments.count));
     }
     if let BoardSpec::Tags(_) = arguments.board {
         return ErrorKind::Option.refuse(format!(
@@ -54,21 +52,14 @@ pub(crate) fn photograph(
     let mut made = simulation.run(&model.robot)?;
     let poses = made.camera_from_board.par_iter().enumerate();
     let pictures: Vec<Vec<u8>> = poses
-        .map(|(at, pose)| {
-            picture((&layout, &lens), pose, arguments.seed.wrapping_mul(1000).wrapping_add(at as u64))
-        })
+        .map(|(at, pose)| picture((&layout, &lens), pose, arguments.seed.wrapping_mul(1000).wrapping_add(at as u64)))
         .collect::<std::result::Result<_, _>>()
         .map_err(|error| ErrorKind::Option.error(error.to_string()))?;
     // Pose of the board's axes as calibrate defines them.
     let of_board = if simulation.in_hand { &mut made.base_from_other } else { &mut made.tip_from_held };
     *of_board = *of_board * scene_from_board;
-    let session = PhotographedSession {
-        simulation: &simulation,
-        made: &made,
-        pictures: &pictures,
-        board: &board,
-        command,
-    };
+    let session =
+        PhotographedSession { simulation: &simulation, made: &made, pictures: &pictures, board: &board, command };
     let written = write_photographs(place, model, &session)?;
     console.warnings(&written.notes);
     let files: Vec<String> = written.files.iter().filter(|it| !it.starts_with("picture-")).cloned().collect();
@@ -118,8 +109,7 @@ fn scene_from_board(layout: &BoardLayout) -> Pose {
 fn picture((layout, lens): (&BoardLayout, &Lens), pose: &Pose, seed: u64) -> poecal_detect::Result<Vec<u8>> {
     let mut random = RandomGenerator::new(seed);
     let size = SIZE_PX.map(|size| size as usize);
-    let camera =
-        RenderCamera { size, focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [K1, 0.0] };
+    let camera = RenderCamera { size, focal_px: lens.focal_px, centre_px: lens.centre_px, distortion: [K1, 0.0] };
     let background = clutter(size, &mut random);
     let scene = RenderScene {
         camera,

@@ -30,7 +30,7 @@ pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
 
 fn unknown(name: &str, program: &clap::Command) -> String {
     let names: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
-    let hint = nearest_word(name, names.iter().copied())
-        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let hint =
+        nearest_word(name, names.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!("man: found no command `{}`, expected one of {}{hint}", escape_invisible(name), names.join(", "))
 }

@@ -10,13 +10,7 @@ use crate::style;
 
 pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> {
     let existing = ExistingFiles::from_switch(arguments.force);
-    let place = ReservedFolder::reserve(
-        &arguments.out,
-        Contents::Reproduction,
-        existing,
-        &[],
-        &mut console.warner(),
-    )?;
+    let place = ReservedFolder::reserve(&arguments.out, Contents::Reproduction, existing, &[], &mut console.warner())?;
     let options = ReproductionOptions {
         trials: arguments.trials as usize,
         starts: arguments.starts as usize,
@@ -25,8 +19,9 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     let bar = console.progress(1);
     bar.set(0, "repeating the experiment");
     let found = match arguments.experiment {
-        Experiment::Lou2009 => lou2009(&options)
-            .and_then(|found| Ok((report::reproduction_files(&found)?, report::claims(&found)))),
+        Experiment::Lou2009 => {
+            lou2009(&options).and_then(|found| Ok((report::reproduction_files(&found)?, report::claims(&found))))
+        }
         Experiment::Breakdown => breakdown(&options)
             .and_then(|found| Ok((report::breakdown_files(&found)?, report::breakdown_table(&found)))),
     };

@@ -11,11 +11,7 @@ use super::disk::{Chance, Faults, SimulatedDisk};
 const ROBOTS: usize = 4;
 
 fn row(robot: usize) -> LedgerRow {
-    LedgerRow {
-        serial: format!("SN{robot}"),
-        date: format!("2026-01-0{}", robot + 1),
-        ..LedgerRow::default()
-    }
+    LedgerRow { serial: format!("SN{robot}"), date: format!("2026-01-0{}", robot + 1), ..LedgerRow::default() }
 }
 
 /// Appends the rows that the ledger does not have; returns their number, and the error that ended it.
@@ -68,10 +64,7 @@ fn a_ledger_on_a_full_disk_is_completed_by_the_next_run() {
         torn += usize::from(text.last().is_some_and(|last| *last != b'\n'));
         let (more, error) = work_off(&disk);
         // A row whose bytes are all there, but not for certain, is not written twice.
-        assert!(
-            error.is_none() && (done + more == ROBOTS || done + more + 1 == ROBOTS),
-            "{faults:?}: {error:?}"
-        );
+        assert!(error.is_none() && (done + more == ROBOTS || done + more + 1 == ROBOTS), "{faults:?}: {error:?}");
         assert_eq!(serials(&disk), all, "{faults:?}");
         count += 1;
     }

@@ -66,12 +66,7 @@ fn place(disk: &SimulatedDisk, path: &str) -> Listing {
     listing
 }
 
-fn case(
-    name: &'static str,
-    start: &SimulatedDisk,
-    command: &'static str,
-    places: &'static [&'static str],
-) -> Case {
+fn case(name: &'static str, start: &SimulatedDisk, command: &'static str, places: &'static [&'static str]) -> Case {
     let start = start.copy();
     let old = places.iter().map(|path| place(&start, path)).collect();
     let disk = start.copy();
@@ -109,30 +104,15 @@ fn cases() -> Vec<Case> {
     assert_eq!(run(&reported, "calibrate robot.urdf monday.csv --out out --report none").code, 0);
     vec![
         case("new folder", &empty, "calibrate robot.urdf tuesday.csv --out out --report none", &["out"]),
-        case(
-            "exchange",
-            &first,
-            "calibrate robot.urdf tuesday.csv --out out --force --report none",
-            &["out"],
-        ),
-        case(
-            "others' files",
-            &others,
-            "calibrate robot.urdf tuesday.csv --out out --force --report none",
-            &["out"],
-        ),
+        case("exchange", &first, "calibrate robot.urdf tuesday.csv --out out --force --report none", &["out"]),
+        case("others' files", &others, "calibrate robot.urdf tuesday.csv --out out --force --report none", &["out"]),
         case(
             "report elsewhere",
             &others,
             "calibrate robot.urdf tuesday.csv --out out --force --report page.html",
             &["out", "page.html"],
         ),
-        case(
-            "simulation",
-            &simulated,
-            "simulate robot.urdf --count 7 --held-out-count 3 --out sim --force",
-            &["sim"],
-        ),
+        case("simulation", &simulated, "simulate robot.urdf --count 7 --held-out-count 3 --out sim --force", &["sim"]),
         case("report", &reported, "report out/calibration.json", &["out"]),
         case("file", &first, "export robot.urdf --format toml --out robot.toml --force", &["robot.toml"]),
         case("new file", &first, "export robot.urdf --format toml --out new.toml", &["new.toml"]),
@@ -197,8 +177,7 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
             (0, "new") | (2, "old") => {}
             // With more than one fault: files that could not be put back are reported, and settled by the next run.
             (2, _) if failures > 1 => {
-                let is_said =
-                    ["settles it", "could not be taken back"].iter().any(|words| said.err.contains(words));
+                let is_said = ["settles it", "could not be taken back"].iter().any(|words| said.err.contains(words));
                 assert!(is_said, "{seen}");
             }
             (code, state) => panic!("{seen}code {code}, but the places are {state}"),
@@ -209,14 +188,10 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     let again = case.command.replace(" --force", "");
     let _ = run(&disk, &again);
     let settled = state(case, &disk);
-    let is_settled =
-        ["old", "new"].contains(&settled) || ((stopped || failures > 1) && settled == "each whole");
+    let is_settled = ["old", "new"].contains(&settled) || ((stopped || failures > 1) && settled == "each whole");
     assert!(is_settled, "{seen}{settled}");
-    let forced = if case.command.contains("--force") || case.name == "report" {
-        case.command.to_owned()
-    } else {
-        again
-    };
+    let forced =
+        if case.command.contains("--force") || case.name == "report" { case.command.to_owned() } else { again };
     let last = run(&disk, &forced);
     // A place that was empty has been filled by the run before.
     assert!(last.code == 0 || !case.command.contains("--force"), "{seen}{last:?}");

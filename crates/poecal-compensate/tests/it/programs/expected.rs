@@ -40,18 +40,11 @@ enum Row {
 }
 
 /// A robot of six joints by directions and points of its axes (mm), its limits (degrees), and its tip at zero.
-pub(super) fn robot(
-    name: &str,
-    axes: [([f64; 3], [f64; 3]); 6],
-    limits: [(f64, f64); 6],
-    home: Pose,
-) -> Robot {
+pub(super) fn robot(name: &str, axes: [([f64; 3], [f64; 3]); 6], limits: [(f64, f64); 6], home: Pose) -> Robot {
     let joints = axes.iter().zip(limits).enumerate().map(|(index, ((direction, point), (lower, upper)))| {
         let point = Vector3::from(*point) * 1e-3;
-        let mut joint = Joint::revolute(
-            &format!("joint{}", index + 1),
-            Screw::revolute(&Vector3::from(*direction), &point),
-        );
+        let mut joint =
+            Joint::revolute(&format!("joint{}", index + 1), Screw::revolute(&Vector3::from(*direction), &point));
         joint.frame.translation = point;
         joint.limits = Some(JointLimits { lower: f64::to_radians(lower), upper: f64::to_radians(upper) });
         joint
@@ -76,8 +69,7 @@ pub(super) fn make_actual(nominal: &Robot) -> Robot {
         let kind = if index % 2 == 0 { TermKind::Cosine } else { TermKind::Sine };
         out.terms.push(JointTerm { joint: index, term: kind.with_number(1), coefficient: 2e-4 * sign });
     }
-    out.home = out.home
-        * Pose::new(rotation::exp(&Vector3::new(1e-3, -5e-4, 2e-4)), Vector3::new(1e-4, 2e-4, -3e-4));
+    out.home = out.home * Pose::new(rotation::exp(&Vector3::new(1e-3, -5e-4, 2e-4)), Vector3::new(1e-4, 2e-4, -3e-4));
     out
 }
 
@@ -112,8 +104,7 @@ fn rows(text: &str) -> Vec<(usize, String, Row)> {
 /// Numbers anywhere in a text, except words with digits.
 fn all_numbers(text: &[u8]) -> Vec<Range<usize>> {
     let is_digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
-    let is_word =
-        |at: usize| text.get(at).is_some_and(|it| it.is_ascii_alphanumeric() || *it == b'_' || *it >= 0x80);
+    let is_word = |at: usize| text.get(at).is_some_and(|it| it.is_ascii_alphanumeric() || *it == b'_' || *it >= 0x80);
     let mut out = Vec::new();
     let mut at = 0;
     while at < text.len() {
@@ -168,23 +159,14 @@ pub(super) fn files(folder: &str, ends: &[&str]) -> Vec<PathBuf> {
 }
 
 /// Compensates a program and compares all of it with the expectation; returns the largest remainders (m, rad), and the corrected targets.
-pub(super) fn check(
-    path: &Path,
-    nominal: &Robot,
-    options: &ProgramOptions,
-    reader: &Reader,
-) -> (f64, f64, usize) {
+pub(super) fn check(path: &Path, nominal: &Robot, options: &ProgramOptions, reader: &Reader) -> (f64, f64, usize) {
     let name = path.file_name().unwrap().to_string_lossy().into_owned();
     let text = std::fs::read(path).unwrap();
     let expected = rows(&std::fs::read_to_string(path.with_extension("expected")).unwrap());
     let actual = make_actual(nominal);
     let (out, summary) = compensate_program(&text, (nominal, &actual), &[], options).unwrap();
-    let found: Vec<String> = summary
-        .changes
-        .listed
-        .iter()
-        .map(|it| format!("{} | {} | {}", it.line, it.name, it.reason))
-        .collect();
+    let found: Vec<String> =
+        summary.changes.listed.iter().map(|it| format!("{} | {} | {}", it.line, it.name, it.reason)).collect();
     let mut listed: Vec<String> = expected
         .iter()
         .filter_map(|(line, name, row)| match row {
@@ -221,13 +203,9 @@ pub(super) fn check(
                 let meant = tip(&before);
                 // One decimal of a millimetre, six of a quaternion or three of a degree, at two metres.
                 let apart = pose_difference(&nominal.forward_kinematics(&q), &meant);
-                assert!(
-                    apart.0 < 1e-4 && apart.1 < 4e-5,
-                    "{name} {target}: not what the file says: {apart:?}"
-                );
+                assert!(apart.0 < 1e-4 && apart.1 < 4e-5, "{name} {target}: not what the file says: {apart:?}");
                 let told = tip(&after);
-                let commanded =
-                    inverse.solve_nearest(&told, &q, false).unwrap_or_else(|| panic!("{name} {target}"));
+                let commanded = inverse.solve_nearest(&told, &q, false).unwrap_or_else(|| panic!("{name} {target}"));
                 let degrees: Vec<f64> = commanded.iter().map(|it| it.to_degrees()).collect();
                 // Targets whose words are not followed are unchanged.
                 let stated: Vec<f64> = q.iter().map(|it| it.to_degrees()).collect();
@@ -259,11 +237,7 @@ pub(super) fn check(
     assert_eq!(split_at_numbers(&text, &old), split_at_numbers(&out, &new), "{name}: other bytes");
     for (old, new) in old.iter().zip(&new) {
         if !changed.iter().any(|it| it.start <= old.start && old.end <= it.end) {
-            assert_eq!(
-                text[old.clone()],
-                out[new.clone()],
-                "{name}: a number that is none of a target at {old:?}"
-            );
+            assert_eq!(text[old.clone()], out[new.clone()], "{name}: a number that is none of a target at {old:?}");
         }
     }
     assert_eq!(summary.corrected, count, "{name}");

@@ -17,14 +17,7 @@ fn fanuc_robot() -> Robot {
         ([0.0, -1.0, 0.0], [385.0, 0.0, 365.0]),
         ([-1.0, 0.0, 0.0], [385.0, 0.0, 365.0]),
     ];
-    let limits = [
-        (-170.0, 170.0),
-        (-100.0, 145.0),
-        (-140.0, 213.0),
-        (-190.0, 190.0),
-        (-125.0, 125.0),
-        (-360.0, 360.0),
-    ];
+    let limits = [(-170.0, 170.0), (-100.0, 145.0), (-140.0, 213.0), (-190.0, 190.0), (-125.0, 125.0), (-360.0, 360.0)];
     let turn = Matrix3::new(0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0);
     robot("fanuc", axes, limits, Pose::new(turn, Vector3::new(0.465, 0.0, 0.365)))
 }
@@ -90,10 +83,7 @@ fn programs_of_fanuc_are_corrected_in_place() {
         let (m, rad, count) = check(path, &nominal, &options, &READER);
         (metres, radians, targets) = (metres.max(m), radians.max(rad), targets + count);
     }
-    println!(
-        "{} programs, {targets} targets: at most {metres:.1e} m and {radians:.1e} rad are left",
-        paths.len()
-    );
+    println!("{} programs, {targets} targets: at most {metres:.1e} m and {radians:.1e} rad are left", paths.len());
     assert_eq!(paths.len(), 20);
     // Half of the last digits, 1e-6 mm and 1e-7 degrees, at less than a metre from the base.
     assert!(metres < 4e-9 && radians < 4e-9);

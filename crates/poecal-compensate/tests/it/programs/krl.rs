@@ -18,8 +18,7 @@ fn kuka_robot() -> Robot {
         (y, [1.1, 0.0, 0.425]),
         (back, [1.1, 0.0, 0.425]),
     ];
-    let limits =
-        [(-170.0, 170.0), (-190.0, 45.0), (-120.0, 156.0), (-185.0, 185.0), (-120.0, 120.0), (-350.0, 350.0)];
+    let limits = [(-170.0, 170.0), (-190.0, 45.0), (-120.0, 156.0), (-185.0, 185.0), (-120.0, 120.0), (-350.0, 350.0)];
     robot(axes, limits, Pose::from_xyz_rpy([1.19, 0.0, 0.425], [0.0, std::f64::consts::FRAC_PI_2, 0.0]))
 }
 
@@ -87,13 +86,13 @@ macro_rules! lines {
 }
 
 const SEVERAL: &str = "it is assigned several times, or handed to a routine";
-const RELATIVE: &str = "the motion is by an amount from where the robot is, which is corrected: a small error of the amount stays";
+const RELATIVE: &str =
+    "the motion is by an amount from where the robot is, which is corrected: a small error of the amount stays";
 const EXTERNAL: &str = "external axes that the model does not have are not at zero";
 const PARTIAL: &str = "it does not state all values: the others are those of the position before";
 const COMPUTED: &str = "it is computed while the program runs";
 const ABSENT: &str = "its values are in another file: correct the one that states them";
-const PLACE: &str =
-    "its tool or base is not known: state them by --tool-data NUMBER= and --work-object NUMBER=";
+const PLACE: &str = "its tool or base is not known: state them by --tool-data NUMBER= and --work-object NUMBER=";
 
 /// Twenty programs; each is named by its content.
 const CASES: [Case; 20] = [
@@ -381,8 +380,7 @@ fn targets_of_twenty_programs_are_reached_and_all_else_stays() {
     let actual = make_actual(&nominal);
     let mut count = 0;
     for case in &CASES {
-        let (metres, radians, corrected) =
-            check(case, &options(case, Language::Krl), (&nominal, &actual), &FORM);
+        let (metres, radians, corrected) = check(case, &options(case, Language::Krl), (&nominal, &actual), &FORM);
         println!("{}: {corrected} corrected, {metres:.1e} m and {radians:.1e} rad left", case.name);
         count += corrected;
     }

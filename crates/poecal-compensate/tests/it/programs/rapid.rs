@@ -19,8 +19,7 @@ fn abb_robot() -> Robot {
         ([0.0, 1.0, 0.0], [1462.0, 0.0, 2060.0]),
         ([1.0, 0.0, 0.0], [1462.0, 0.0, 2060.0]),
     ];
-    let limits =
-        [(-170.0, 170.0), (-65.0, 85.0), (-180.0, 70.0), (-300.0, 300.0), (-130.0, 130.0), (-360.0, 360.0)];
+    let limits = [(-170.0, 170.0), (-65.0, 85.0), (-180.0, 70.0), (-300.0, 300.0), (-130.0, 130.0), (-360.0, 360.0)];
     let home = Pose::new(rotation::about(1, FRAC_PI_2), Vector3::new(1.662, 0.0, 2.060));
     robot("abb", axes, limits, home)
 }
@@ -73,10 +72,7 @@ fn programs_in_rapid_are_corrected_in_place() {
         let (m, rad, count) = check(path, &nominal, &options, &READER);
         (metres, radians, targets) = (metres.max(m), radians.max(rad), targets + count);
     }
-    println!(
-        "{} programs, {targets} targets: at most {metres:.1e} m and {radians:.1e} rad are left",
-        paths.len()
-    );
+    println!("{} programs, {targets} targets: at most {metres:.1e} m and {radians:.1e} rad are left", paths.len());
     assert_eq!(paths.len(), 20);
     // Half of the last digits, 1e-6 mm and 1e-9 of a quaternion, at two metres from the base.
     assert!(metres < 1e-8 && radians < 4e-9);
@@ -108,7 +104,6 @@ fn targets_without_moves_have_what_the_user_states() {
     let inverse = Inverse::new(&nominal, &[]).unwrap();
     let meant = inverse.solve_nearest(&pose(text.as_bytes()), &[0.0; 6], true).unwrap();
     let commanded = inverse.solve_nearest(&pose(&out), &meant, true).unwrap();
-    let left =
-        make_actual(&nominal).forward_kinematics(&commanded).translation - pose(text.as_bytes()).translation;
+    let left = make_actual(&nominal).forward_kinematics(&commanded).translation - pose(text.as_bytes()).translation;
     assert!(left.norm() < 1e-8, "{left}");
 }

@@ -66,8 +66,7 @@ fn cut_template(template: &str, nominal: &Robot, form: &Form) -> (Vec<String>, V
         let letter = rest[at + 1..].chars().next().unwrap();
         let end = at + rest[at..].find('}').unwrap();
         let inside: Vec<&str> = rest[at + 3..end].split('|').collect();
-        let q: Vec<f64> =
-            inside[0].split_whitespace().map(|it| it.parse::<f64>().unwrap().to_radians()).collect();
+        let q: Vec<f64> = inside[0].split_whitespace().map(|it| it.parse::<f64>().unwrap().to_radians()).collect();
         let named = |at: usize| inside.get(at).map_or(Pose::identity(), |it| (form.named)(it));
         let (tool, frame) = (named(1), named(2));
         let text = if letter.eq_ignore_ascii_case(&'j') {
@@ -100,11 +99,7 @@ fn texts_in_slots(written: &[u8], pieces: &[String]) -> Vec<String> {
             rest.len()
         } else {
             rest.windows(piece.len()).position(|it| it == piece).unwrap_or_else(|| {
-                panic!(
-                    "`{}` is missing in `{}`",
-                    String::from_utf8_lossy(&piece),
-                    String::from_utf8_lossy(rest)
-                )
+                panic!("`{}` is missing in `{}`", String::from_utf8_lossy(&piece), String::from_utf8_lossy(rest))
             })
         };
         found.push(String::from_utf8(rest[..length].to_vec()).unwrap());
@@ -126,12 +121,7 @@ const ROUNDING: f64 = 2e-8;
 const LEAST_MOVED: f64 = 1e-4;
 
 /// Compensates a case and checks every slot; returns the largest remaining distance and angle, and the number of corrected slots.
-pub(super) fn check(
-    case: &Case,
-    options: &ProgramOptions,
-    robots: (&Robot, &Robot),
-    form: &Form,
-) -> (f64, f64, usize) {
+pub(super) fn check(case: &Case, options: &ProgramOptions, robots: (&Robot, &Robot), form: &Form) -> (f64, f64, usize) {
     let (nominal, actual) = robots;
     let (pieces, slots) = cut_template(case.text, nominal, form);
     let mut text = latin(&pieces[0]);

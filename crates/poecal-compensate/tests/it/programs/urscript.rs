@@ -193,11 +193,7 @@ const CASES: [Case; 20] = [
         text: "wp = p[@p{15 -65 75 -90 -85 25|u}]\nset_tcp(p[0,0,0.2,0,0,0])\nmovej([@J{10 -70 80 -100 -80 \
                20}])\nmovel(wp)\nset_tcp(p[0,0,0.25,0,0,0])\nmovel(wp)\nset_tcp(computed())\nmovel(wp)\n",
         options: &[],
-        listed: &[(
-            1,
-            "wp",
-            "it is used with several tools or frames: make a target for each (motion on line 6)",
-        )],
+        listed: &[(1, "wp", "it is used with several tools or frames: make a target for each (motion on line 6)")],
     },
     Case {
         name: "a thread that sets the tool",
@@ -249,8 +245,7 @@ fn targets_of_twenty_programs_are_reached_and_all_else_stays() {
     let actual = make_actual(&nominal);
     let mut count = 0;
     for case in &CASES {
-        let (metres, radians, corrected) =
-            check(case, &options(case, Language::UrScript), (&nominal, &actual), &FORM);
+        let (metres, radians, corrected) = check(case, &options(case, Language::UrScript), (&nominal, &actual), &FORM);
         println!("{}: {corrected} corrected, {metres:.1e} m and {radians:.1e} rad left", case.name);
         count += corrected;
     }
@@ -270,8 +265,7 @@ fn degrees_signs_and_spaces_are_those_of_the_program() {
     assert_eq!(bare(&written), bare(text));
     assert!(written.contains(", - 1.2") && written.contains(" +1.3"), "{written}");
     let found = super::slots::numbers(&written.replace("d2r", "").replace("- ", "-").replace("-(", "("));
-    let q =
-        [found[0].to_radians(), found[1], found[2], found[3].to_radians(), -found[4].to_radians(), found[5]];
+    let q = [found[0].to_radians(), found[1], found[2], found[3].to_radians(), -found[4].to_radians(), found[5]];
     let meant = [10_f64.to_radians(), -1.25, 1.4, -100_f64.to_radians(), -80_f64.to_radians(), 0.35];
     let (there, here) = (actual.forward_kinematics(&q), nominal.forward_kinematics(&meant));
     let left = (there.translation - here.translation).norm();
@@ -286,8 +280,7 @@ fn a_long_program_takes_time_by_its_length() {
     let actual = make_actual(&nominal);
     let options = ProgramOptions::new(Language::UrScript);
     let program = |count: usize| {
-        let line =
-            |at: usize| format!("movej([0.1, -1.2, 1.4, {}, -1.4, 0.3])\n", -1.7 + 1e-4 * (at % 1000) as f64);
+        let line = |at: usize| format!("movej([0.1, -1.2, 1.4, {}, -1.4, 0.3])\n", -1.7 + 1e-4 * (at % 1000) as f64);
         (0..count).map(line).collect::<String>()
     };
     let time = |count: usize| {

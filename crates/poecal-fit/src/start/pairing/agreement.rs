@@ -84,12 +84,8 @@ impl UnpairedRows<'_> {
             return Some(Agreement::None { missed_m });
         }
         Some(match best {
-            Some((order, other_m)) if EVIDENT * other_m < missed_m => {
-                Agreement::Other { missed_m, order, other_m }
-            }
-            Some((order, other_m)) if other_m < EVIDENT * missed_m => {
-                Agreement::Alike { missed_m, order, other_m }
-            }
+            Some((order, other_m)) if EVIDENT * other_m < missed_m => Agreement::Other { missed_m, order, other_m },
+            Some((order, other_m)) if other_m < EVIDENT * missed_m => Agreement::Alike { missed_m, order, other_m },
             _ => Agreement::Right { missed_m },
         })
     }
@@ -114,8 +110,7 @@ impl UnpairedRows<'_> {
     pub fn find_exchanged_pairs(&self, pairs: &[RowPair]) -> Vec<(usize, usize)> {
         let Some((estimate, usual)) = self.register_pairs(pairs) else { return Vec::new() };
         let errors = self.errors_of(pairs, &estimate);
-        let wrong: Vec<usize> =
-            errors.iter().enumerate().filter(|it| *it.1 > WRONG * usual).map(|it| it.0).collect();
+        let wrong: Vec<usize> = errors.iter().enumerate().filter(|it| *it.1 > WRONG * usual).map(|it| it.0).collect();
         // A larger number of wrong pairs is no exchange.
         if wrong.len() > pairs.len() / 4 {
             return Vec::new();
@@ -123,8 +118,7 @@ impl UnpairedRows<'_> {
         let crossed: Vec<(usize, usize)> = (wrong.iter())
             .flat_map(|one| wrong.iter().filter(move |other| *other != one).map(move |other| (*one, *other)))
             .collect();
-        let tried: Vec<RowPair> =
-            crossed.iter().map(|(one, other)| (pairs[*other].0, pairs[*one].1)).collect();
+        let tried: Vec<RowPair> = crossed.iter().map(|(one, other)| (pairs[*other].0, pairs[*one].1)).collect();
         let found = self.errors_of(&tried, &estimate);
         crossed.into_iter().zip(found).filter(|it| it.1 < RIGHT * usual).map(|it| it.0).collect()
     }
@@ -132,10 +126,7 @@ impl UnpairedRows<'_> {
 
 fn orders(count: usize) -> Vec<RowOrder> {
     let shifts = 1..=SHIFTS.min(count.saturating_sub(1));
-    shifts
-        .flat_map(|by| [RowOrder::MeasuredLater(by), RowOrder::JointsLater(by)])
-        .chain([RowOrder::Reversed])
-        .collect()
+    shifts.flat_map(|by| [RowOrder::MeasuredLater(by), RowOrder::JointsLater(by)]).chain([RowOrder::Reversed]).collect()
 }
 
 /// Pairs in another order.
@@ -154,11 +145,7 @@ fn shuffled(pairs: &[RowPair], seed: usize) -> Vec<RowPair> {
     let mut joints: Vec<usize> = pairs.iter().map(|it| it.0).collect();
     // A step that has no divisor in common with the number of pairs takes every one once.
     let count = joints.len().max(1);
-    let step = [7, 11, 13, 17, 19, 23]
-        .into_iter()
-        .filter(|it| !count.is_multiple_of(*it))
-        .nth(seed % 4)
-        .unwrap_or(1);
+    let step = [7, 11, 13, 17, 19, 23].into_iter().filter(|it| !count.is_multiple_of(*it)).nth(seed % 4).unwrap_or(1);
     joints = (0..count).filter_map(|at| joints.get((at * step + count / 2) % count)).copied().collect();
     joints.into_iter().zip(pairs.iter().map(|it| it.1)).collect()
 }

@@ -86,8 +86,7 @@ impl IntervalScatter {
         }
         let wide = of(&|it| it.root_m() > NARROW_M.max(WIDE * usual));
         if !wide.is_empty() {
-            let most =
-                wide.iter().filter_map(|at| all.get(*at)).map(IntervalScatter::root_m).fold(0.0, f64::max);
+            let most = wide.iter().filter_map(|at| all.get(*at)).map(IntervalScatter::root_m).fold(0.0, f64::max);
             said.push(format!(
                 "the rows of {} at {} scatter by up to {}, those of the others by {} (median)",
                 if wide.len() == 1 { "the stand that begins" } else { "the stands that begin" },
@@ -118,10 +117,7 @@ mod tests {
         spread.add(&places, &is_kept, &Vector3::zeros());
         let calm = IntervalScatter { squares: spread.squares, count: 99, ..IntervalScatter::default() };
         let said = IntervalScatter::warnings(&[calm, spread, calm], |some| format!("{some:?}"));
-        assert_eq!(
-            said,
-            ["left out 1 row up to 600.000 mm from the others of the same stand: one that begins at [1]"]
-        );
+        assert_eq!(said, ["left out 1 row up to 600.000 mm from the others of the same stand: one that begins at [1]"]);
         assert!(IntervalScatter::of_all(&[calm, spread]) < 1e-4);
         // Readings of an encoder whose last digit changes.
         let toggles: Vec<f64> = (0..50).map(|k| if k % 5 == 0 { 1e-3 } else { 0.0 }).collect();

@@ -30,11 +30,7 @@ pub(crate) fn jitter(session: &Session<'_>, rows: &[u32], estimate: &Estimate) -
         across += 0.5 * (vector.norm_squared() - part * part);
         (squares, count) = (squares + length * length, count + 1.0);
     }
-    if count < FEWEST as f64 || squares <= 0.0 {
-        0.0
-    } else {
-        f64::sqrt(f64::max(along - across, 0.0) / squares)
-    }
+    if count < FEWEST as f64 || squares <= 0.0 { 0.0 } else { f64::sqrt(f64::max(along - across, 0.0) / squares) }
 }
 
 /// Speed below which a row has no information on its stamp, m/s.

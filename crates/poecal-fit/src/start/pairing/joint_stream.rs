@@ -30,22 +30,13 @@ impl JointStream {
             (0..times.len()).filter(|&at| times.get(at).is_some_and(|it| it.is_finite())).collect();
         order.sort_by(|&a, &b| times[a].total_cmp(&times[b]).then(a.cmp(&b)));
         order.dedup_by(|next, known| times[*next] <= times[*known]);
-        if order.len() < 4
-            || width == 0
-            || readings.len() != width * times.len()
-            || order.len() < times.len() / 2
-        {
+        if order.len() < 4 || width == 0 || readings.len() != width * times.len() || order.len() < times.len() / 2 {
             return None;
         }
         let own: Vec<f64> = order.iter().map(|&at| times[at]).collect();
         let step = median(own.windows(2).map(|it| it[1] - it[0]))?;
         let readings = order.iter().flat_map(|&at| readings[at * width..(at + 1) * width].iter().copied());
-        Some(JointStream {
-            times: own,
-            readings: readings.collect(),
-            width,
-            gap_s: (GAP_STEPS * step).max(GAP_S),
-        })
+        Some(JointStream { times: own, readings: readings.collect(), width, gap_s: (GAP_STEPS * step).max(GAP_S) })
     }
 
     /// The same stream with each reading replaced by a function of its index and value.
@@ -94,9 +85,7 @@ impl JointStream {
                 + h * m1 * (s3 - 2.0 * s2 + s)
                 + c * (3.0 * s2 - 2.0 * s3)
                 + h * m2 * (s3 - s2);
-            *rate = (b - c) * (6.0 * s2 - 6.0 * s) / h
-                + m1 * (3.0 * s2 - 4.0 * s + 1.0)
-                + m2 * (3.0 * s2 - 2.0 * s);
+            *rate = (b - c) * (6.0 * s2 - 6.0 * s) / h + m1 * (3.0 * s2 - 4.0 * s + 1.0) + m2 * (3.0 * s2 - 2.0 * s);
         }
         true
     }
@@ -112,8 +101,7 @@ pub fn smooth_times(times: &[f64]) -> Option<Vec<f64>> {
     }
     let step = (times[count - 1] - times[0]) / (count - 1) as f64;
     // Second differences of white noise with σ = 1 have the standard deviation √6.
-    let scatter =
-        median(times.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).abs()))? / (0.6745 * 6f64.sqrt());
+    let scatter = median(times.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).abs()))? / (0.6745 * 6f64.sqrt());
     if step <= 0.0 || scatter < IRREGULAR_S.max(IRREGULAR * step) {
         return None;
     }
@@ -146,16 +134,12 @@ mod tests {
         for k in 0..150 {
             let t = 0.02 + 0.0123 * f64::from(k);
             assert!(stream.interpolate(t, &mut value, &mut rate));
-            worst =
-                (worst.0.max((value[0] - of(t)).abs()), worst.1.max((rate[0] - 2.0 * (2.0 * t).cos()).abs()));
+            worst = (worst.0.max((value[0] - of(t)).abs()), worst.1.max((rate[0] - 2.0 * (2.0 * t).cos()).abs()));
         }
         println!("value {:.1e}, rate {:.1e}", worst.0, worst.1);
         // Third order of the slopes: h³ q''' / 48 and h² q''' / 12.
         assert!(worst.0 < 3e-7 && worst.1 < 3e-4);
-        assert!(
-            !stream.interpolate(-0.1, &mut value, &mut rate)
-                && !stream.interpolate(2.5, &mut value, &mut rate)
-        );
+        assert!(!stream.interpolate(-0.1, &mut value, &mut rate) && !stream.interpolate(2.5, &mut value, &mut rate));
     }
 
     #[test]

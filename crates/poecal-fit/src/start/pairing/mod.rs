@@ -79,8 +79,7 @@ impl<'a> UnpairedRows<'a> {
             let target = (observation.station, observation.target);
             let is_same_line = line == Some(observation.source);
             let name = |row: u32| data.ids.get(row as usize);
-            let is_other =
-                shots.last().and_then(|it| it.first()).is_some_and(|&first| name(first) != name(row));
+            let is_other = shots.last().and_then(|it| it.first()).is_some_and(|&first| name(first) != name(row));
             if shots.is_empty() || !is_same_line && (is_other || !seen.insert(target)) {
                 shots.push(Vec::new());
                 seen = BTreeSet::from([target]);
@@ -124,8 +123,7 @@ impl<'a> UnpairedRows<'a> {
 
     /// The same measurements with the pair of each row.
     fn pair_rows(&self, pairs: &[RowPair]) -> (Dataset, Vec<usize>) {
-        let mut data =
-            Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
+        let mut data = Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
         (data.targets, data.stations) = (self.data.targets.clone(), self.data.stations.clone());
         let mut of = Vec::new();
         for (at, (joint, shot)) in pairs.iter().enumerate() {
@@ -151,18 +149,11 @@ impl<'a> UnpairedRows<'a> {
         let mut rows = data.all_rows();
         let mut best = None;
         for _ in 0..2 {
-            let problem =
-                Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
+            let problem = Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
             let estimate = register_roughly(&problem, &nominal_estimate(self.robot, &data));
             let missed: Vec<f64> = session.errors(&data.all_rows(), &estimate).iter().map(size).collect();
             let usual = median(missed.iter().copied()).filter(|it| it.is_finite())?;
-            rows = data
-                .all_rows()
-                .into_iter()
-                .zip(&missed)
-                .filter(|it| *it.1 <= ODD * usual)
-                .map(|it| it.0)
-                .collect();
+            rows = data.all_rows().into_iter().zip(&missed).filter(|it| *it.1 <= ODD * usual).map(|it| it.0).collect();
             best = Some((estimate, usual));
         }
         best
@@ -186,9 +177,7 @@ impl<'a> UnpairedRows<'a> {
                 *sum = (sum.0 + size(error).powi(2), sum.1 + 1.0);
             }
         }
-        sums.into_iter()
-            .map(|(sum, count)| if count > 0.0 { f64::sqrt(sum / count) } else { f64::INFINITY })
-            .collect()
+        sums.into_iter().map(|(sum, count)| if count > 0.0 { f64::sqrt(sum / count) } else { f64::INFINITY }).collect()
     }
 }
 

@@ -11,9 +11,7 @@ use crate::problem::{Prior, Problem};
 use crate::start::registration::{Registration, register_again};
 use crate::start::stations::register_roughly;
 use crate::start::target_parameters;
-use crate::state::{
-    ClockTerm, Estimate, PackedValues, RowError, Session, Unknowns, nominal_estimate, sample_rows,
-};
+use crate::state::{ClockTerm, Estimate, PackedValues, RowError, Session, Unknowns, nominal_estimate, sample_rows};
 use poecal_model::measurement::{Clock, Dataset, MovingRows, Observation, Quantity};
 use poecal_model::robot::{Robot, Tolerance};
 use poecal_numerics::distributions::median;
@@ -123,12 +121,7 @@ impl<'a> MotionRecording<'a> {
     ///
     /// # Errors
     /// [`ErrorKind::Measurement`] for rows without a position, or without times, and for several instruments.
-    pub fn new(
-        robot: &'a Robot,
-        joints: &'a JointStream,
-        data: &'a Dataset,
-        times: &'a [f64],
-    ) -> Result<Self> {
+    pub fn new(robot: &'a Robot, joints: &'a JointStream, data: &'a Dataset, times: &'a [f64]) -> Result<Self> {
         if data.observations.iter().any(|it| it.measurement.position().is_none()) {
             return ErrorKind::Measurement
                 .refuse("found measurements without a place, expected points or poses of a robot in motion");
@@ -151,10 +144,7 @@ impl<'a> MotionRecording<'a> {
     ///
     /// # Errors
     /// [`LagFailure`].
-    pub fn find_lag(
-        &self,
-        stated: Option<(f64, f64)>,
-    ) -> std::result::Result<MotionMeasurements, LagFailure> {
+    pub fn find_lag(&self, stated: Option<(f64, f64)>) -> std::result::Result<MotionMeasurements, LagFailure> {
         let lags = self.by_speed(stated);
         let middle_s = self.middle();
         let mut refined: Vec<LaggedMeasurements> = Vec::new();
@@ -208,17 +198,16 @@ impl<'a> MotionRecording<'a> {
         // For a short recording the wrong lags are smaller, so that a part overlaps.
         let scale = (shorter / LONG_S).min(1.0);
         let others = [-7.3, 5.9, -2.1, 3.4, -13.7, 11.2].map(|by| best.lag_s + scale * by);
-        let missed = others.iter().filter_map(|&lag_s| {
-            Some(self.register_at(&ClockGuess { lag_s, drift: 0.0, middle_s }, SOME)?.1)
-        });
+        let missed = others
+            .iter()
+            .filter_map(|&lag_s| Some(self.register_at(&ClockGuess { lag_s, drift: 0.0, middle_s }, SOME)?.1));
         median(missed).is_none_or(|usual| best.missed_m * EVIDENT > usual)
     }
 
     /// Rows that are fitted, at most `most`, at this clock, with the readings at their times.
     fn session(&self, guess: &ClockGuess, most: usize) -> Option<(Dataset, Vec<u32>)> {
         let width = self.data.reading_names().len();
-        let mut data =
-            Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
+        let mut data = Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
         (data.targets, data.stations) = (self.data.targets.clone(), self.data.stations.clone());
         let ClockGuess { lag_s, drift, middle_s } = *guess;
         let stations = 0..data.station_count();
@@ -226,8 +215,7 @@ impl<'a> MotionRecording<'a> {
         let (mut readings, mut rates) = (vec![0.0; width], vec![0.0; width]);
         let mut own = Vec::new();
         for row in sample_rows(&self.spread(), most) {
-            let (observation, time) =
-                (self.data.observations.get(row as usize)?, *self.times.get(row as usize)?);
+            let (observation, time) = (self.data.observations.get(row as usize)?, *self.times.get(row as usize)?);
             if !self.joints.interpolate(guess.joint_time(time), &mut readings, &mut rates) {
                 continue;
             }
@@ -260,8 +248,7 @@ impl<'a> MotionRecording<'a> {
         let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
         let problem = registration(session);
         let rows = data.all_rows();
-        let estimate =
-            register_roughly(&Registration { rows: &rows, ..problem }, &nominal_estimate(self.robot, &data));
+        let estimate = register_roughly(&Registration { rows: &rows, ..problem }, &nominal_estimate(self.robot, &data));
         let missed = median(session.errors(&rows, &estimate).iter().map(size))?;
         Some((estimate, missed))
     }
@@ -326,26 +313,24 @@ impl<'a> MotionRecording<'a> {
                     .into_iter()
                     .chain(target_parameters(&session, &rows))
                     .chain(clocks.map(Parameter::ClockUnknown));
-                let problem = Problem::new(session, rows.clone(), free.collect(), NOISE)
-                    .with_prior(Some((&prior, weight)));
+                let problem =
+                    Problem::new(session, rows.clone(), free.collect(), NOISE).with_prior(Some((&prior, weight)));
                 estimate = minimize(&problem, estimate, &Options::default()).0;
             }
             let (lag, drift) = (estimate.clock(0).lag_s, estimate.clock(0).drift);
             jitter_s = jitter(&session, &rows, &estimate);
             fitted_m = median(session.errors(&rows, &estimate).iter().map(size))?;
-            (guess.lag_s, guess.drift) =
-                (guess.lag_s + lag.clamp(-0.1, 0.1), guess.drift + drift.clamp(-1e-3, 1e-3));
+            (guess.lag_s, guess.drift) = (guess.lag_s + lag.clamp(-0.1, 0.1), guess.drift + drift.clamp(-1e-3, 1e-3));
             if lag.abs() < FOUND_S && drift.abs() < 1e-7 {
                 break;
             }
         }
         let (data, rows) = self.session(&guess, MOST)?;
         let ClockGuess { lag_s, drift, middle_s } = guess;
-        let rows =
-            rows.into_iter().zip(&data.observations).enumerate().filter_map(|(at, (row, observation))| {
-                let (rates, time_s) = data.motion(observation)?;
-                Some(MovingRow { row, readings: data.readings(at).to_vec(), rates: rates.to_vec(), time_s })
-            });
+        let rows = rows.into_iter().zip(&data.observations).enumerate().filter_map(|(at, (row, observation))| {
+            let (rates, time_s) = data.motion(observation)?;
+            Some(MovingRow { row, readings: data.readings(at).to_vec(), rates: rates.to_vec(), time_s })
+        });
         let clock = Clock { station: 0, lag_s, drift, middle_s };
         Some(MotionMeasurements { clock, rows: rows.collect(), missed_m, fitted_m, jitter_s })
     }

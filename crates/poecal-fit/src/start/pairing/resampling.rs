@@ -94,8 +94,7 @@ impl ResampledStream {
 
     /// Motion, by the position of each row of numbers, metres.
     fn motion(&self, place: impl Fn(&[f64]) -> Vector3<f64>, stands: &[TimeInterval]) -> MotionEntry {
-        let places: Vec<Option<Vector3<f64>>> =
-            self.values.iter().map(|it| it.as_deref().map(&place)).collect();
+        let places: Vec<Option<Vector3<f64>>> = self.values.iter().map(|it| it.as_deref().map(&place)).collect();
         let speed = |it: &[Option<Vector3<f64>>]| {
             let (from, to) = ((*it.first()?)?, (*it.get(1)?)?);
             Some(round_to_steps(1e3 * (to - from).norm() / self.step_s, 10.0))
@@ -178,9 +177,6 @@ mod tests {
         assert!(motion.speeds_mm_s[..9].iter().all(|it| it.is_some_and(|it| (it - 1000.0).abs() < 0.2)));
         assert!(motion.speeds_mm_s[11..21].iter().all(|it| *it == Some(0.0)));
         assert!(motion.speeds_mm_s[22..32].iter().all(Option::is_none));
-        assert!(
-            ResampledStream::new(&[], &[], 3).is_none()
-                && ResampledStream::new(&[1.0], &[0.0; 3], 3).is_none()
-        );
+        assert!(ResampledStream::new(&[], &[], 3).is_none() && ResampledStream::new(&[1.0], &[0.0; 3], 3).is_none());
     }
 }

@@ -52,9 +52,7 @@ impl MotionTrack {
         let count = (self.span_s() / step_s) as usize + 1;
         let speed = |at: usize| {
             let (from, to) = (first_s + (at as f64 - 0.5) * step_s, first_s + (at as f64 + 0.5) * step_s);
-            self.position_at(from)
-                .zip(self.position_at(to))
-                .map_or(f64::NAN, |(a, b)| (b - a).norm() / step_s)
+            self.position_at(from).zip(self.position_at(to)).map_or(f64::NAN, |(a, b)| (b - a).norm() / step_s)
         };
         Speeds { first_s, step_s, values: (0..count).map(speed).collect() }
     }
@@ -100,8 +98,7 @@ pub(crate) fn lags(
         .collect();
     let mut peaks: Vec<(f64, f64)> = (0..all.len())
         .filter(|&k| {
-            let beside =
-                |at: Option<usize>| at.and_then(|at| all.get(at)).map_or(f64::NEG_INFINITY, |it| it.0);
+            let beside = |at: Option<usize>| at.and_then(|at| all.get(at)).map_or(f64::NEG_INFINITY, |it| it.0);
             all[k].0 >= beside(k.checked_sub(1)) && all[k].0 > beside(Some(k + 1))
         })
         .map(|k| all[k])

@@ -147,11 +147,8 @@ impl RowStream {
         if windows.len() < FEWEST {
             return Vec::new();
         }
-        let sums: Vec<Vec<ChannelSums>> = self
-            .channels
-            .iter()
-            .map(|it| it.values.iter().map(|it| ChannelSums::from_values(it)).collect())
-            .collect();
+        let sums: Vec<Vec<ChannelSums>> =
+            self.channels.iter().map(|it| it.values.iter().map(|it| ChannelSums::from_values(it)).collect()).collect();
         let mut still = vec![true; windows.len()];
         let mut tolerances = Vec::with_capacity(self.channels.len());
         for (channels, sums) in self.channels.iter().zip(&sums) {
@@ -189,8 +186,7 @@ impl RowStream {
                 let apart = sums.iter().map(|it| (it.mean(last) - it.mean(&next)).powi(2)).sum::<f64>();
                 apart.sqrt() <= SAME * tolerance
             };
-            let is_same =
-                joined.last().is_some_and(|last| sums.iter().zip(&tolerances).all(|it| is_near(last, it)));
+            let is_same = joined.last().is_some_and(|last| sums.iter().zip(&tolerances).all(|it| is_near(last, it)));
             match joined.last_mut() {
                 Some(last) if is_same => last.end = next.end,
                 _ => joined.push(next),
@@ -203,8 +199,7 @@ impl RowStream {
     fn trim_ends(&self, rows: &Range<usize>) -> Option<StaticInterval> {
         let (first, last) = (*self.times.get(rows.start)?, *self.times.get(rows.end.checked_sub(1)?)?);
         let cut = CUT_S.min(0.25 * (last - first));
-        let is_inside =
-            |at: &usize| self.times.get(*at).is_some_and(|it| (first + cut..=last - cut).contains(it));
+        let is_inside = |at: &usize| self.times.get(*at).is_some_and(|it| (first + cut..=last - cut).contains(it));
         let start = rows.clone().find(is_inside)?;
         let end = rows.clone().rev().find(is_inside)? + 1;
         Some(StaticInterval { rows: start..end, span_s: (first, last) })
@@ -309,9 +304,8 @@ fn quantile(values: &[f64], share: f64) -> f64 {
 }
 
 fn span(values: &[f64]) -> f64 {
-    let (low, high) = values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |it, value| (it.0.min(*value), it.1.max(*value)));
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |it, value| (it.0.min(*value), it.1.max(*value)));
     (high - low).max(0.0)
 }
 
@@ -378,9 +372,7 @@ mod tests {
         assert_eq!(of(&|at, it| if at == 70 { f64::NAN } else { it }), Some(StreamFailure::NoTime(70)));
         assert_eq!(of(&|at, it| if at == 70 { it - 1.0 } else { it }), Some(StreamFailure::Back(70)));
         assert_eq!(of(&|_, it| -it), Some(StreamFailure::Back(1)));
-        assert!(
-            matches!(of(&|_, it| 1e3 * it), Some(StreamFailure::Slow(step)) if (step - 10.0).abs() < 1e-9)
-        );
+        assert!(matches!(of(&|_, it| 1e3 * it), Some(StreamFailure::Slow(step)) if (step - 10.0).abs() < 1e-9));
     }
 
     #[test]

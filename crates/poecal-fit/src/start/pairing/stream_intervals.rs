@@ -56,11 +56,7 @@ fn digit(values: &[f64]) -> f64 {
 }
 
 /// A stream, if the rows are dense enough.
-fn dense_stream(
-    times: &[f64],
-    rows: usize,
-    channels: Vec<StreamChannels>,
-) -> Result<RowStream, Option<StreamFailure>> {
+fn dense_stream(times: &[f64], rows: usize, channels: Vec<StreamChannels>) -> Result<RowStream, Option<StreamFailure>> {
     let own = if times.len() == rows { times.to_vec() } else { vec![f64::NAN; rows] };
     let stream = RowStream::new(own, channels);
     if !stream.is_smooth() {
@@ -119,23 +115,20 @@ pub fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStand
         return Err(None);
     }
     let stream = stream_of_places(&own, (&rows, times)).map_err(|why| why.map(|it| it.of_rows(&rows)))?;
-    let mut found =
-        MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
+    let mut found = MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
     (found.data.targets, found.data.stations) = (data.targets.clone(), data.stations.clone());
     let (mut spreads, mut starts) = (Vec::new(), Vec::new());
     for stand in stream.stands() {
         let (Some(&first), Some(&last)) = (rows.get(stand.rows.start), rows.get(stand.rows.end - 1)) else {
             continue;
         };
-        let seen: Vec<&Observation> =
-            data.observations.get(first..=last).unwrap_or_default().iter().collect();
+        let seen: Vec<&Observation> = data.observations.get(first..=last).unwrap_or_default().iter().collect();
         // The line with the most targets represents all.
         let mut by_line: BTreeMap<u32, Vec<&Observation>> = BTreeMap::new();
         for it in &seen {
             by_line.entry(it.source.line).or_default().push(it);
         }
-        let Some((line, chosen)) = by_line.iter().max_by_key(|it| (it.1.len(), std::cmp::Reverse(*it.0)))
-        else {
+        let Some((line, chosen)) = by_line.iter().max_by_key(|it| (it.1.len(), std::cmp::Reverse(*it.0))) else {
             continue;
         };
         let mut means = Vec::with_capacity(chosen.len());

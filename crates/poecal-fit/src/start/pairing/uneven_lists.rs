@@ -186,34 +186,32 @@ impl Costs {
                 (costs[cell(joint, shot)], steps[cell(joint, shot)]) = best;
             }
         }
-        let (mut joint, mut shot, mut pairs) = (joints, shots, Vec::new());
-        while joint > 0 || shot > 0 {
-            match steps[cell(joint, shot)] {
-                AlignmentStep::Pair if joint > 0 && shot > 0 => {
-                    pairs.push((joint - 1, shot - 1));
-                    (joint, shot) = (joint - 1, shot - 1);
-                }
-                AlignmentStep::Again if joint > 0 && shot > 0 => {
-                    pairs.push((joint - 1, shot - 1));
-                    shot -= 1;
-                }
-                AlignmentStep::SkipShot if shot > 0 => shot -= 1,
-                AlignmentStep::Pair
-                | AlignmentStep::Again
-                | AlignmentStep::SkipJoints
-                | AlignmentStep::SkipShot
-                    if joint > 0 =>
-                {
-                    joint -= 1
-                }
-                AlignmentStep::Pair
-                | AlignmentStep::Again
-                | AlignmentStep::SkipJoints
-                | AlignmentStep::SkipShot => shot -= 1,
-            }
-        }
-        pairs.reverse();
+        let pairs = trace_pairs(&steps, (joints, shots));
         let missed = median(pairs.iter().map(|it| self.error_at(it.0, it.1)))?;
         Some((pairs, missed))
     }
+}
+
+/// Pairs along the cheapest alignment, from its last cell to the first.
+fn trace_pairs(steps: &[AlignmentStep], (joints, shots): (usize, usize)) -> Vec<RowPair> {
+    let (mut joint, mut shot, mut pairs) = (joints, shots, Vec::new());
+    while joint > 0 || shot > 0 {
+        match steps[joint * (shots + 1) + shot] {
+            AlignmentStep::Pair if joint > 0 && shot > 0 => {
+                pairs.push((joint - 1, shot - 1));
+                (joint, shot) = (joint - 1, shot - 1);
+            }
+            AlignmentStep::Again if joint > 0 && shot > 0 => {
+                pairs.push((joint - 1, shot - 1));
+                shot -= 1;
+            }
+            AlignmentStep::SkipJoints if joint > 0 => joint -= 1,
+            AlignmentStep::SkipShot if shot > 0 => shot -= 1,
+            AlignmentStep::Pair | AlignmentStep::Again | AlignmentStep::SkipJoints | AlignmentStep::SkipShot => {
+                if joint > 0 { joint -= 1 } else { shot -= 1 }
+            }
+        }
+    }
+    pairs.reverse();
+    pairs
 }

@@ -28,8 +28,7 @@ impl<'a> CompilerSettings<'a> {
             let is = |name: &str, words: [&str; 2], expected: &str| -> Result<Option<bool>> {
                 let word = node.attribute(name);
                 let [no, yes] = words.map(|it| (it, it == words[1]));
-                let meaning =
-                    |word| source.meaning(node, (name, word), "in <compiler>", &[no, yes], expected);
+                let meaning = |word| source.meaning(node, (name, word), "in <compiler>", &[no, yes], expected);
                 word.map(meaning).transpose()
             };
             let in_degrees = is("angle", ["radian", "degree"], "degree or radian")?;
@@ -39,16 +38,14 @@ impl<'a> CompilerSettings<'a> {
             if let Some(order) = node.attribute("eulerseq") {
                 let is_order = order.len() == 3 && order.chars().all(|c| "xyzXYZ".contains(c));
                 if !is_order {
-                    let message = format!(
-                        "found eulerseq=\"{order}\" in <compiler>, expected three of x, y, z, X, Y, Z"
-                    );
+                    let message =
+                        format!("found eulerseq=\"{order}\" in <compiler>, expected three of x, y, z, X, Y, Z");
                     return source.refuse(node, message);
                 }
                 settings.euler = order;
             }
             if node.attribute("coordinate") == Some("global") {
-                let message =
-                    "found coordinate=\"global\" in <compiler>, expected local, as MuJoCo itself since 2.3.4";
+                let message = "found coordinate=\"global\" in <compiler>, expected local, as MuJoCo itself since 2.3.4";
                 return source.refuse(node, message);
             }
         }
@@ -91,11 +88,7 @@ pub(crate) struct MjcfDefaults<'a> {
 }
 
 impl<'a> MjcfDefaults<'a> {
-    pub(crate) fn read(
-        source: XmlSource<'a>,
-        settings: CompilerSettings<'a>,
-        root: Node<'a, 'a>,
-    ) -> Result<Self> {
+    pub(crate) fn read(source: XmlSource<'a>, settings: CompilerSettings<'a>, root: Node<'a, 'a>) -> Result<Self> {
         let (classes, blocks, main) = (Vec::new(), BTreeMap::new(), String::new());
         let mut defaults = MjcfDefaults { source, settings, classes, blocks, main };
         for node in source.children(root, "default") {
@@ -161,11 +154,7 @@ impl<'a> MjcfDefaults<'a> {
         Ok(self.find_stating(of, name)?.and_then(|it| it.attribute(name)))
     }
 
-    pub(crate) fn numbers<const N: usize>(
-        &self,
-        of: ElementClass<'a>,
-        name: &str,
-    ) -> Result<Option<[f64; N]>> {
+    pub(crate) fn numbers<const N: usize>(&self, of: ElementClass<'a>, name: &str) -> Result<Option<[f64; N]>> {
         let Some(stating) = self.find_stating(of, name)? else { return Ok(None) };
         self.source.numbers(stating, name, &describe_element(of.node))
     }

@@ -66,13 +66,8 @@ impl<'a> MjcfReader<'a, '_> {
         let reference = angle(known.numbers::<1>(stated, "ref")?.map_or(0.0, |[it]| it));
         let limited = known.word(stated, "limited")?.unwrap_or("auto");
         let place_words = format!("of {of}");
-        let limited = known.source.meaning(
-            node,
-            ("limited", limited),
-            &place_words,
-            &LIMITED,
-            "true, false or auto",
-        )?;
+        let limited =
+            known.source.meaning(node, ("limited", limited), &place_words, &LIMITED, "true, false or auto")?;
         let range = match known.find_stating(stated, "range")? {
             Some(stating) => known.source.bounds::<2>(stating, "range", &of)?,
             None => None,
@@ -96,8 +91,7 @@ impl<'a> MjcfReader<'a, '_> {
     pub(crate) fn read_followers(&mut self, equality: Node<'a, 'a>) -> Result<()> {
         let source = self.defaults.source;
         for node in source.children(equality, "joint") {
-            let active =
-                self.defaults.stating_one(ElementClass { node, class: None }, "equality", &["active"])?;
+            let active = self.defaults.stating_one(ElementClass { node, class: None }, "equality", &["active"])?;
             if active.is_some_and(|it| it.attribute("active") == Some("false")) {
                 continue;
             }
@@ -112,8 +106,7 @@ impl<'a> MjcfReader<'a, '_> {
                 }
             };
             let Some((follower, own)) = joint("joint1")? else {
-                let message =
-                    "<joint> of <equality> has no attribute `joint1`, expected the joint that follows";
+                let message = "<joint> of <equality> has no attribute `joint1`, expected the joint that follows";
                 return source.refuse(node, message);
             };
             let leader = joint("joint2")?;

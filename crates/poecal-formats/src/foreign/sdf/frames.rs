@@ -68,9 +68,8 @@ impl<'a> SdfFrames<'a> {
         }
         let of = format!("<model> `{}`", model.attribute("name").unwrap_or_default());
         if let Some(placed) = model.attribute("placement_frame").filter(|it| !it.is_empty()) {
-            let message = format!(
-                "found placement_frame=\"{placed}\" in {of}, expected none: place the model by its <pose>"
-            );
+            let message =
+                format!("found placement_frame=\"{placed}\" in {of}, expected none: place the model by its <pose>");
             return self.source.refuse(model, message);
         }
         let own = format!("{prefix}{MODEL}");
@@ -113,12 +112,7 @@ impl<'a> SdfFrames<'a> {
     }
 
     /// The frame of a link, a joint or a frame of a model.
-    fn frame(
-        &self,
-        node: Node<'a, 'a>,
-        (prefix, name, own): (&str, &str, &str),
-        of: &str,
-    ) -> Result<SdfFrame<'a>> {
+    fn frame(&self, node: Node<'a, 'a>, (prefix, name, own): (&str, &str, &str), of: &str) -> Result<SdfFrame<'a>> {
         let (pose, base) = self.pose(node, of)?;
         let base = base.map(|base| Self::join_name(prefix, base));
         let (default, on) = match node.tag_name().name() {
@@ -135,9 +129,8 @@ impl<'a> SdfFrames<'a> {
 
     pub(crate) fn child_text(&self, node: Node<'a, 'a>, name: &'static str, of: &str) -> Result<String> {
         let text = self.source.child(node, name).map(text_of);
-        text.filter(|text| !text.is_empty()).ok_or_else(|| {
-            self.source.error(node, format!("{of} has no <{name}>, expected the name of a link"))
-        })
+        text.filter(|text| !text.is_empty())
+            .ok_or_else(|| self.source.error(node, format!("{of} has no <{name}>, expected the name of a link")))
     }
 
     /// The pose of an element, and the frame that it names.
@@ -145,8 +138,7 @@ impl<'a> SdfFrames<'a> {
         let Some(element) = self.source.child(node, "pose") else {
             return Ok((Pose::identity(), None));
         };
-        let base =
-            element.attribute("relative_to").or(element.attribute("frame")).filter(|it| !it.is_empty());
+        let base = element.attribute("relative_to").or(element.attribute("frame")).filter(|it| !it.is_empty());
         let numbers = self.numbers_of(element, of)?;
         let in_degrees = match element.attribute("degrees") {
             Some(word) => self.is_true(element, word, "degrees")?,
@@ -158,15 +150,11 @@ impl<'a> SdfFrames<'a> {
             (None | Some("euler_rpy"), &[x, y, z, roll, pitch, yaw]) => {
                 Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw].map(angle))
             }
-            (Some("quat_xyzw"), &[x, y, z, qx, qy, qz, qw])
-                if qx.abs() + qy.abs() + qz.abs() + qw.abs() > 0.0 =>
-            {
+            (Some("quat_xyzw"), &[x, y, z, qx, qy, qz, qw]) if qx.abs() + qy.abs() + qz.abs() + qw.abs() > 0.0 => {
                 Pose::from_position_quaternion([x, y, z], [qx, qy, qz, qw])
             }
             (Some("quat_xyzw"), [_, _, _, _, _, _, _]) => {
-                return self
-                    .source
-                    .refuse(element, format!("found a quaternion of no length in <pose> of {of}"));
+                return self.source.refuse(element, format!("found a quaternion of no length in <pose> of {of}"));
             }
             (_, numbers) => {
                 let message = format!(
@@ -184,9 +172,7 @@ impl<'a> SdfFrames<'a> {
         match word.trim().to_ascii_lowercase().as_str() {
             "true" | "1" => Ok(true),
             "false" | "0" => Ok(false),
-            word => {
-                self.source.refuse(node, format!("found `{word}` in `{of}`, expected true, false, 1 or 0"))
-            }
+            word => self.source.refuse(node, format!("found `{word}` in `{of}`, expected true, false, 1 or 0")),
         }
     }
 
@@ -197,17 +183,15 @@ impl<'a> SdfFrames<'a> {
         let words = text.split_whitespace();
         let number = |word: &str| {
             let number = word.parse().ok().filter(|number: &f64| !number.is_nan());
-            number.ok_or_else(|| {
-                self.source.error(node, format!("found `{word}` in <{tag}> of {of}, expected a number"))
-            })
+            number
+                .ok_or_else(|| self.source.error(node, format!("found `{word}` in <{tag}> of {of}, expected a number")))
         };
         let numbers: Vec<f64> = words.map(number).collect::<Result<_>>()?;
         let is_length = !matches!(tag, "lower" | "upper" | "mass");
         match numbers.iter().find(|it| is_length && it.abs() > LARGEST_NUMBER) {
             Some(number) => {
-                let message = format!(
-                    "found {number} in <{tag}> of {of}, expected a number of metres or radians below 1e6"
-                );
+                let message =
+                    format!("found {number} in <{tag}> of {of}, expected a number of metres or radians below 1e6");
                 self.source.refuse(node, message)
             }
             None => Ok(numbers),
@@ -221,8 +205,7 @@ impl<'a> SdfFrames<'a> {
     }
 
     fn unknown(&self, at: Option<Node<'a, 'a>>, name: &str) -> poecal_numerics::error::Error {
-        let message =
-            format!("found the frame `{name}`, which is not in the model, expected a link, joint or frame");
+        let message = format!("found the frame `{name}`, which is not in the model, expected a link, joint or frame");
         self.source.error(at.unwrap_or_else(|| self.source.document.root_element()), message)
     }
 
@@ -270,9 +253,8 @@ impl<'a> SdfFrames<'a> {
                     let node = frame.node.unwrap_or(asking);
                     at = match self.source.child(node, "child").map(text_of) {
                         Some(child) => {
-                            let prefix = at
-                                .rsplit_once("::")
-                                .map_or(String::new(), |(prefix, _)| format!("{prefix}::"));
+                            let prefix =
+                                at.rsplit_once("::").map_or(String::new(), |(prefix, _)| format!("{prefix}::"));
                             Self::join_name(&prefix, &child)
                         }
                         None => break,
@@ -280,8 +262,6 @@ impl<'a> SdfFrames<'a> {
                 }
             }
         }
-        Err(self
-            .source
-            .error(asking, format!("`{name}` is fixed to no link, expected a link or a frame on one")))
+        Err(self.source.error(asking, format!("`{name}` is fixed to no link, expected a link or a frame on one")))
     }
 }

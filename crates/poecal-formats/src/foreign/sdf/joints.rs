@@ -114,11 +114,9 @@ impl<'a> SdfFrames<'a> {
     ) -> Result<Unit<Vector3<f64>>> {
         let xyz = self.source.child(axis, "xyz");
         let numbers = xyz.map(|xyz| self.numbers_of(xyz, of)).transpose()?.unwrap_or(vec![0.0, 0.0, 1.0]);
-        let direction =
-            <[f64; 3]>::try_from(numbers).ok().and_then(|it| Unit::try_new(Vector3::from(it), 1e-12));
+        let direction = <[f64; 3]>::try_from(numbers).ok().and_then(|it| Unit::try_new(Vector3::from(it), 1e-12));
         let Some(direction) = direction else {
-            let message =
-                format!("found no direction in <xyz> of {of}, expected three numbers, not all zero");
+            let message = format!("found no direction in <xyz> of {of}, expected three numbers, not all zero");
             return self.source.refuse(xyz.unwrap_or(axis), message);
         };
         let in_model = match self.source.child(axis, "use_parent_model_frame") {

@@ -25,19 +25,14 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<LinkTree> 
     let source = XmlSource { document: &document, path };
     let root = document.root_element();
     let model = the_model(source, root)?;
-    if let Some(node) = model.descendants().find(|node| node.has_tag_name("include") && !is_of_plugin(*node))
-    {
+    if let Some(node) = model.descendants().find(|node| node.has_tag_name("include") && !is_of_plugin(*node)) {
         let message = "found <include>, expected a model in one file: `gz sdf --print FILE` writes it whole";
         return Err(source.syntax_error(node, message));
     }
-    let version =
-        root.attribute("version").and_then(|it| it.split_once('.')?.1.parse::<u32>().ok()).unwrap_or(12);
+    let version = root.attribute("version").and_then(|it| it.split_once('.')?.1.parse::<u32>().ok()).unwrap_or(12);
     let unread = unread_elements::sentence(&source, root, unread_elements::SDF)?;
-    let mut links = SdfFrames::from_model(source, model)?.links(
-        model.attribute("name").unwrap_or("robot"),
-        version,
-        named,
-    )?;
+    let mut links =
+        SdfFrames::from_model(source, model)?.links(model.attribute("name").unwrap_or("robot"), version, named)?;
     links.unread = unread;
     Ok(links)
 }
@@ -52,10 +47,8 @@ fn the_model<'a>(source: XmlSource<'a>, root: Node<'a, 'a>) -> Result<Node<'a, '
         [model] => Ok(**model),
         [] => Err(source.syntax_error(root, "found no <model> with a <joint>, expected one")),
         [_, second, ..] => {
-            let message = format!(
-                "found {} models with joints, expected one: keep the arm's alone in a file",
-                moving.len()
-            );
+            let message =
+                format!("found {} models with joints, expected one: keep the arm's alone in a file", moving.len());
             source.refuse(**second, message)
         }
     }

@@ -62,9 +62,7 @@ impl TopicBodies {
         });
         self.held += 1;
         if let Some(body) = self.all.get_mut(at) {
-            body.seen
-                .0
-                .push((MessageTime { own: stamp_ns, log: log_ns }, ObservedBody { position, quaternion }));
+            body.seen.0.push((MessageTime { own: stamp_ns, log: log_ns }, ObservedBody { position, quaternion }));
         }
     }
 }

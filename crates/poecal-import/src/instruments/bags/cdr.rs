@@ -153,10 +153,7 @@ mod tests {
             (&[0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF], "its end after 8 bytes"),
             (&[0, 1, 0, 0, 1, 0, 0, 0, 0xFF], "a text that is no UTF-8"),
         ] {
-            assert_eq!(
-                CdrReader::new(bytes).and_then(|mut it| it.text().map(str::len)),
-                Err(found.to_owned())
-            );
+            assert_eq!(CdrReader::new(bytes).and_then(|mut it| it.text().map(str::len)), Err(found.to_owned()));
         }
         let huge = [0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0];
         let refused = Err("a sequence of 4294967295 in the last 4 bytes".to_owned());

@@ -93,8 +93,7 @@ pub(crate) fn joints<'t>(
         [one] => refuse_unreadable(one.0).map(|()| *one),
         [] => {
             all.iter().try_for_each(|it| refuse_unreadable(it.0))?;
-            let words =
-                |it: &(&Topic, &TopicReadings)| format!("`{}` with {}", it.0.name, it.1.describe_missing());
+            let words = |it: &(&Topic, &TopicReadings)| format!("`{}` with {}", it.0.name, it.1.describe_missing());
             let found: Vec<String> = all.iter().take(NAMED).map(words).collect();
             let expected = "the joints of the robot under their names in the model";
             refuse_missing(format!("found {}, expected {expected}", found.join("; ")))
@@ -131,9 +130,7 @@ pub(crate) fn find_measured<'t>(
         }
         ([], _) => {
             let found = bodies(&pool);
-            return refuse_missing(format!(
-                "found {found} that all stand, expected one that moves with the robot"
-            ));
+            return refuse_missing(format!("found {found} that all stand, expected one that moves with the robot"));
         }
         (several, _) => return refuse_several(several),
     };

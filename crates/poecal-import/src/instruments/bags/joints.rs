@@ -78,17 +78,10 @@ impl TopicReadings {
     }
 
     /// The table with these columns, and times since a whole second.
-    pub(crate) fn table(
-        &self,
-        topic: &str,
-        columns: impl Iterator<Item = TableColumn>,
-        since_s: i64,
-    ) -> MadeTable {
+    pub(crate) fn table(&self, topic: &str, columns: impl Iterator<Item = TableColumn>, since_s: i64) -> MadeTable {
         let columns = columns.zip(&self.joints);
-        let columns =
-            columns.map(|(column, joint)| column.made_of(|_| format!("position of `{joint}` in {topic}")));
-        let mut made =
-            MadeTable::new(1, std::iter::once(TableColumn::from("time").in_unit("s")).chain(columns));
+        let columns = columns.map(|(column, joint)| column.made_of(|_| format!("position of `{joint}` in {topic}")));
+        let mut made = MadeTable::new(1, std::iter::once(TableColumn::from("time").in_unit("s")).chain(columns));
         let width = self.joints.len();
         for (time, at, number) in self.rows.sorted(since_s) {
             let values = self.values.get(at * width..(at + 1) * width).unwrap_or_default();

@@ -74,21 +74,13 @@ pub(crate) fn read_given(given: &ConvertedBag, opening: &OpeningContext<'_>) -> 
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
     let stated = mcap::stated_size(&mut given.mcap.as_ref());
-    refuse_large(
-        stated.map_err(|error| source::unreadable_error(&given.path, &error, EXPECTED))?,
-        &given.path,
-    )?;
+    refuse_large(stated.map_err(|error| source::unreadable_error(&given.path, &error, EXPECTED))?, &given.path)?;
     let warned = take(&mut given.mcap.as_ref(), &mut topics, &given.path, None)?;
     Ok(recording(&topics, opening, &given.sha256, warned))
 }
 
 /// Takes the messages of a file and returns its defects, named as this part. Too many topics, frames or poses are one of them.
-fn take(
-    mut input: impl io::Read,
-    topics: &mut Topics<'_>,
-    path: &Path,
-    name: Option<&Path>,
-) -> Result<Vec<String>> {
+fn take(mut input: impl io::Read, topics: &mut Topics<'_>, path: &Path, name: Option<&Path>) -> Result<Vec<String>> {
     topics.begin_file();
     let damage = mcap::read(&mut input, topics);
     let damage = damage.map_err(|error| source::unreadable_error(path, &error, EXPECTED))?;
@@ -112,18 +104,11 @@ fn refuse_large(unpacked: u64, path: &Path) -> Result<()> {
 }
 
 /// The tables of the topics.
-fn recording(
-    topics: &Topics<'_>,
-    opening: &OpeningContext<'_>,
-    sha256: &str,
-    warned: Vec<String>,
-) -> Recording {
+fn recording(topics: &Topics<'_>, opening: &OpeningContext<'_>, sha256: &str, warned: Vec<String>) -> Recording {
     let joints = choice::joints(topics, opening.options);
     let measured = choice::find_measured(topics, opening.options);
-    let first_ns = [
-        joints.as_ref().ok().and_then(|it| it.1.first_ns()),
-        measured.as_ref().ok().and_then(|it| it.body.first_ns()),
-    ];
+    let first_ns =
+        [joints.as_ref().ok().and_then(|it| it.1.first_ns()), measured.as_ref().ok().and_then(|it| it.body.first_ns())];
     // The same whole second for both, so that the lag of their clocks is kept.
     let since_s = first_ns.into_iter().flatten().min().unwrap_or_default().div_euclid(SECOND);
     let own = |made: MadeTable| made.of_file(BAG, Some(sha256.to_owned()));

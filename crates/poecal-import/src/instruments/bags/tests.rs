@@ -193,8 +193,7 @@ fn read_all(paths: &[&Path], options: &ReadOptions) -> Result<MeasurementFile, S
 
 /// True if two files have the same rows.
 fn are_same(one: &MeasurementFile, other: &MeasurementFile) -> bool {
-    let measured =
-        |it: &MeasurementFile| it.data.observations.iter().map(|it| it.measurement).collect::<Vec<_>>();
+    let measured = |it: &MeasurementFile| it.data.observations.iter().map(|it| it.measurement).collect::<Vec<_>>();
     one.data.all_readings() == other.data.all_readings() && measured(one) == measured(other)
 }
 
@@ -209,10 +208,8 @@ fn both_parts_of_a_bag_are_the_same_rows_as_two_tables() {
     let whole = folder.write("whole.mcap", bag(&messages));
     let (first, second) = messages.split_at(messages.len() / 2);
     // The parts in the order of their numbers, each with channels of its own.
-    let second: Vec<Message> = [("/other", "std_msgs/msg/String", second[0].2, vec![0, 1, 0, 0])]
-        .into_iter()
-        .chain(second.to_vec())
-        .collect();
+    let second: Vec<Message> =
+        [("/other", "std_msgs/msg/String", second[0].2, vec![0, 1, 0, 0])].into_iter().chain(second.to_vec()).collect();
     folder.write("parts/run_10.mcap", bag(&second));
     let part = folder.write("parts/run_9.mcap", bag(first));
     let of = |topic: &str| messages.iter().filter(|it| it.0 == topic).cloned().collect::<Vec<_>>();
@@ -301,27 +298,18 @@ fn several_topics_are_refused_unless_one_is_named() {
     messages.extend(again);
     let path = folder.write("both.mcap", bag(&messages));
     let error = read_all(&[&path], &ReadOptions::default()).unwrap_err();
-    assert!(
-        error.contains("found 2 topics with joint readings of the robot, `/joint_states` (sensor_msgs"),
-        "{error}"
-    );
+    assert!(error.contains("found 2 topics with joint readings of the robot, `/joint_states` (sensor_msgs"), "{error}");
     assert!(error.ends_with("expected one: name it by --topic"), "{error}");
     let with = |topics: &[&str]| ReadOptions {
         topics: topics.iter().map(|it| (*it).to_owned()).collect(),
         ..ReadOptions::default()
     };
     let error = read_all(&[&path], &with(&["/joint_states"])).unwrap_err();
-    assert!(
-        error.contains("found 2 topics with poses of what moves, `/tool/pose` (geometry_msgs"),
-        "{error}"
-    );
+    assert!(error.contains("found 2 topics with poses of what moves, `/tool/pose` (geometry_msgs"), "{error}");
     let found = read_all(&[&path], &with(&["wanted", "/again"])).unwrap();
     assert!(are_same(&found, &expected));
     let error = read_all(&[&path], &with(&["/joint_state"])).unwrap_err();
-    assert!(
-        error.contains("found no topic `/joint_state`, expected one of `/base/pose` (geometry_msgs"),
-        "{error}"
-    );
+    assert!(error.contains("found no topic `/joint_state`, expected one of `/base/pose` (geometry_msgs"), "{error}");
     let frames = ReadOptions { body: Some("link3".to_owned()), ..with(&["/joint_states"]) };
     let error = read_all(&[&path], &frames).unwrap_err();
     assert!(error.contains("found no frame `link3`, expected one of"), "{error}");
@@ -352,8 +340,7 @@ fn stamps_that_are_zero_are_warned_of() {
     let mut messages = session(&robot);
     for (topic, name, log, data) in &mut messages {
         if *topic == "/tool/pose" {
-            (*name, *data) =
-                (POINT, Cdr::pose(0, &pose(&robot, ((*log - FIRST_NS) / 1_000_000) as f64)[..3]));
+            (*name, *data) = (POINT, Cdr::pose(0, &pose(&robot, ((*log - FIRST_NS) / 1_000_000) as f64)[..3]));
         }
     }
     let found = read_all(&[&folder.write("a.mcap", bag(&messages))], &ReadOptions::default()).unwrap();
@@ -367,8 +354,7 @@ fn a_bag_that_is_cut_or_damaged_is_read_as_far_as_it_goes() {
     let cut = &whole[..whole.len() * 7 / 10];
     let found = read_all(&[&folder.write("cut.mcap", cut)], &options).unwrap();
     let is_cut = |it: &String| {
-        it.contains("read it up to the last whole chunk")
-            && it.contains("s after the first message: it is cut off")
+        it.contains("read it up to the last whole chunk") && it.contains("s after the first message: it is cut off")
     };
     assert!(found.warnings.iter().any(is_cut), "{:?}", found.warnings);
     assert!((7..STANDS as usize).contains(&found.data.len()), "{}", found.data.len());
@@ -452,12 +438,8 @@ fn a_bag_beyond_a_limit_is_refused_by_its_name() {
         (ResourceLimit::Poses, 10, "found more than 10 poses in the messages of a bag"),
     ] {
         let limits = limits::current_limits().with_limit(limit, most);
-        let error =
-            limits::run_with_limits(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
-        assert!(
-            error.contains(part) && error.contains(&format!("--limit {}=N", limit.row().name)),
-            "{error}"
-        );
+        let error = limits::run_with_limits(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
+        assert!(error.contains(part) && error.contains(&format!("--limit {}=N", limit.row().name)), "{error}");
     }
     // The parts of a bag count as one towards the limit.
     let whole = bag(&session(&robot));

@@ -63,12 +63,7 @@ impl Topic {
     pub(crate) fn words(&self) -> String {
         let messages = if self.count == 1 { "message" } else { "messages" };
         let rate = self.rate().map_or(String::new(), |rate| format!(", {rate:.1} Hz"));
-        format!(
-            "`{}` ({}, {} {messages}{rate})",
-            shorten_name(&self.name),
-            shorten_name(&self.title),
-            self.count
-        )
+        format!("`{}` ({}, {} {messages}{rate})", shorten_name(&self.name), shorten_name(&self.title), self.count)
     }
 
     /// True if this is its name, with or without the leading slash.

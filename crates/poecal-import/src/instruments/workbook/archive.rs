@@ -37,8 +37,7 @@ impl ArchiveParts {
             let Ok(part) = archive.by_index(at) else { continue };
             if part.name().eq_ignore_ascii_case(BINARY) {
                 return Err(
-                    "found a binary workbook (.xlsb), expected .xlsx, .xls or .ods: save it as .xlsx"
-                        .to_owned(),
+                    "found a binary workbook (.xlsb), expected .xlsx, .xls or .ods: save it as .xlsx".to_owned()
                 );
             }
             let is_content = part.name() == CONTENT;
@@ -226,9 +225,8 @@ mod tests {
     use poecal_storage::limits;
 
     fn refuse_rows(most: u64, rows: &str) -> Option<String> {
-        let content = format!(
-            "<office:spreadsheet><table:table table:name='A'>{rows}</table:table></office:spreadsheet>"
-        );
+        let content =
+            format!("<office:spreadsheet><table:table table:name='A'>{rows}</table:table></office:spreadsheet>");
         limits::run_with_limits(limits::current_limits().with_limit(ResourceLimit::Cells, most), || {
             cells_of_ods(content.as_bytes()).err()
         })
@@ -244,9 +242,8 @@ mod tests {
 
     #[test]
     fn cells_that_are_repeated_count() {
-        let cell = |count: u64, value: &str| {
-            format!("<table:table-cell table:number-columns-repeated=\"{count}\"{value}/>")
-        };
+        let cell =
+            |count: u64, value: &str| format!("<table:table-cell table:number-columns-repeated=\"{count}\"{value}/>");
         let row = |count: u64, cells: &str| {
             format!("<table:table-row table:number-rows-repeated=\"{count}\">{cells}</table:table-row>")
         };

@@ -56,14 +56,11 @@ impl SheetCells {
         if self.area() > left.cells || self.cells.len() as u64 >= left.cells {
             let [top, bottom, first, last] = extent.map(u64::from);
             let (rows, columns) = (bottom - top + 1, last - first + 1);
-            return Err(
-                ResourceLimit::Cells.sentence(&format!("a sheet of {rows} rows and {columns} columns"))
-            );
+            return Err(ResourceLimit::Cells.sentence(&format!("a sheet of {rows} rows and {columns} columns")));
         }
         if let Data::String(text) = &value {
             let rest = left.texts.checked_sub(text.len() as u64);
-            left.texts =
-                rest.ok_or_else(|| ResourceLimit::Unpacked.exceeded_error("the texts of the cells"))?;
+            left.texts = rest.ok_or_else(|| ResourceLimit::Unpacked.exceeded_error("the texts of the cells"))?;
         }
         self.cells.push(Cell::new((row, column), value));
         Ok(())
@@ -169,10 +166,7 @@ mod tests {
         assert_eq!(found.area(), 6);
         found.add((1 << 31, 1 << 31), Data::Empty, &mut left).unwrap();
         let error = found.add((1_048_575, 1), Data::Int(1), &mut left).unwrap_err();
-        assert!(
-            error.starts_with("found a sheet of 1048575 rows and 3 columns, expected at most"),
-            "{error}"
-        );
+        assert!(error.starts_with("found a sheet of 1048575 rows and 3 columns, expected at most"), "{error}");
         let mut same = SheetCells::default();
         assert!((0..7).map(|_| same.add((0, 0), Data::Int(1), &mut left)).any(|it| it.is_err()));
         let text = || Data::String("abc".to_owned());

@@ -36,11 +36,7 @@ pub(super) fn head(rows: &[&[Data]]) -> Option<SheetHead> {
 }
 
 /// The row of units, if any, and the first row of numbers below the header, if half of the columns with names have numbers.
-fn begin(
-    rows: &[&[Data]],
-    header: usize,
-    is_named: impl Fn(usize) -> bool,
-) -> Option<(Option<usize>, usize)> {
+fn begin(rows: &[&[Data]], header: usize, is_named: impl Fn(usize) -> bool) -> Option<(Option<usize>, usize)> {
     let is_blank = |row: &&[Data]| row.iter().all(is_empty);
     let first = header + 1 + rows.iter().skip(header + 1).position(|it| !is_blank(it))?;
     let has_numbers = rows.get(first).is_some_and(|it| it.iter().any(|it| value(it).is_some()));
@@ -60,21 +56,14 @@ fn one_line(rows: &[&[Data]], header: usize) -> Option<SheetHead> {
     }
     let (units, begin) = begin(rows, header, |at| row.get(at).is_some_and(|it| !is_empty(it)))?;
     let columns = row.iter().rposition(|it| !is_empty(it)).map_or(0, |it| it + 1);
-    Some(SheetHead {
-        names: row.iter().take(columns).map(text).collect(),
-        header,
-        units,
-        begin,
-        is_two: false,
-    })
+    Some(SheetHead { names: row.iter().take(columns).map(text).collect(), header, units, begin, is_two: false })
 }
 
 /// A row of groups, each over one column or several, and a row of names or of numbers that count from 1.
 fn two_lines(rows: &[&[Data]], above: usize) -> Option<SheetHead> {
     let (over, under) = (rows.get(above)?, rows.get(above + 1)?);
     let cells = |row: &[Data], at: usize| row.get(at).map_or_else(String::new, text);
-    let width =
-        [over, under].into_iter().filter_map(|row| row.iter().rposition(|it| !is_empty(it))).max()? + 1;
+    let width = [over, under].into_iter().filter_map(|row| row.iter().rposition(|it| !is_empty(it))).max()? + 1;
     let (over_texts, names): (Vec<String>, Vec<String>) =
         (0..width).map(|at| (cells(over, at), cells(under, at))).unzip();
     let counted = |at: &usize| under.get(*at).and_then(value);
@@ -91,18 +80,14 @@ fn two_lines(rows: &[&[Data]], above: usize) -> Option<SheetHead> {
         let is_number = counted(&at).is_some();
         let is_again = names.iter().filter(|it| plain_letters(it) == plain_letters(name)).count() > 1;
         found.push(match group {
-            Some(group) if !name.is_empty() => {
-                join_names(group, name, is_number || is_again || is_unit(name))
-            }
+            Some(group) if !name.is_empty() => join_names(group, name, is_number || is_again || is_unit(name)),
             Some(group) if !own.is_empty() => group.clone(),
             _ => name.clone(),
         });
     }
     let are_texts = over.iter().all(|it| is_empty(it) || is_text(&it)) && over.iter().any(|it| is_text(&it));
-    let is_head = are_texts
-        && is_counted
-        && has_span
-        && found.iter().filter(|it| !it.is_empty()).count() >= FEWEST_COLUMNS;
+    let is_head =
+        are_texts && is_counted && has_span && found.iter().filter(|it| !it.is_empty()).count() >= FEWEST_COLUMNS;
     let (units, begin) =
         begin(rows, above + 1, |at| found.get(at).is_some_and(|it| !it.is_empty())).filter(|_| is_head)?;
     Some(SheetHead { names: found, header: above + 1, units, begin, is_two: true })
@@ -111,8 +96,7 @@ fn two_lines(rows: &[&[Data]], above: usize) -> Option<SheetHead> {
 /// A name below a group: with its words if other names are the same, and always with its unit.
 fn join_names(group: &str, name: &str, with_words: bool) -> String {
     let parts = |cell: &str| -> (String, Option<String>) {
-        let found =
-            [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| split_brackets(cell, open, close));
+        let found = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| split_brackets(cell, open, close));
         let found = found.filter(|it| unit_of(it.1.trim()).is_some());
         found.map_or((cell.trim().to_owned(), None), |(name, unit)| {
             (name.trim().to_owned(), Some(unit.trim().to_owned()))
@@ -120,8 +104,7 @@ fn join_names(group: &str, name: &str, with_words: bool) -> String {
     };
     let ((words, of_group), (own, unit)) = (parts(group), parts(name));
     let bare = name.trim_matches(['[', ']', '(', ')']);
-    let (own, unit) =
-        if unit_of(bare).is_some() { (String::new(), Some(bare.to_owned())) } else { (own, unit) };
+    let (own, unit) = if unit_of(bare).is_some() { (String::new(), Some(bare.to_owned())) } else { (own, unit) };
     let both = if with_words { format!("{words} {own}") } else { own };
     unit.or(of_group).map_or(both.trim().to_owned(), |unit| format!("{} [{unit}]", both.trim()))
 }

@@ -84,10 +84,7 @@ pub(crate) fn table(bytes: &[u8], opening: &OpeningContext<'_>) -> Result<MadeTa
     let names = book.names();
     let wanted = opening.options.sheet.as_ref();
     if let Some(wanted) = wanted.filter(|it| !names.contains(it)) {
-        return Refusal::refuse_whole(format!(
-            "found no sheet `{wanted}`, expected one of {}",
-            quote_names(&names)
-        ));
+        return Refusal::refuse_whole(format!("found no sheet `{wanted}`, expected one of {}", quote_names(&names)));
     }
     let mut tables = Vec::new();
     for name in wanted.map_or(names.iter().collect(), |it| vec![it]) {
@@ -134,8 +131,7 @@ impl SheetTable {
     fn from_range(range: Range<Data>, name: &str) -> Option<Self> {
         let rows: Vec<&[Data]> = range.rows().collect();
         let SheetHead { names, header, units, begin, is_two } = head(&rows)?;
-        let is_filled =
-            |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(names.len()).all(is_empty));
+        let is_filled = |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(names.len()).all(is_empty));
         let mut rows_at: Vec<usize> = (begin..rows.len()).filter(is_filled).collect();
         // From the first sum on, all rows below are of the same kind.
         let first = rows_at.len().saturating_sub(LAST);
@@ -165,9 +161,7 @@ impl SheetTable {
             Some(([first, second], called)) => {
                 Ok(self.make_table(&first)?.with_other(called, self.make_table(&second)?))
             }
-            None => {
-                self.make_table(&names.into_iter().map(TableColumn::from).enumerate().collect::<Vec<_>>())
-            }
+            None => self.make_table(&names.into_iter().map(TableColumn::from).enumerate().collect::<Vec<_>>()),
         }
     }
 
@@ -187,11 +181,9 @@ impl SheetTable {
         let mut stored = Vec::new();
         for &row in &self.rows {
             let cells = numeric.iter();
-            let cells: Vec<(String, Option<f64>)> = cells
-                .map(|(at, it)| self.read_cell((row, *at), *it, &mut stored))
-                .collect::<Result<_, _>>()?;
-            let typed =
-                cells.iter().map(|(text, number)| number.map_or(CellValue::Text(text), CellValue::Number));
+            let cells: Vec<(String, Option<f64>)> =
+                cells.map(|(at, it)| self.read_cell((row, *at), *it, &mut stored)).collect::<Result<_, _>>()?;
+            let typed = cells.iter().map(|(text, number)| number.map_or(CellValue::Text(text), CellValue::Number));
             made.row(self.line(row), typed);
         }
         let (name, first) = (&self.sheet.name, self.rows.first().map_or(0, |at| self.line(*at)));
@@ -209,9 +201,7 @@ impl SheetTable {
         }
         if !stored.is_empty() {
             let stored = first_few(&stored);
-            made.warn(format!(
-                "sheet `{name}`: numbers that are stored as text are read as numbers: {stored}"
-            ));
+            made.warn(format!("sheet `{name}`: numbers that are stored as text are read as numbers: {stored}"));
         }
         made.sheet = Some(self.sheet.clone());
         Ok(made)

@@ -45,11 +45,8 @@ pub(crate) fn read_long(fields: &mut ByteFields<'_>) -> Option<f64> {
 /// A number in four bytes: an integer or the upper half of a number, maybe hundredths.
 pub(crate) fn read_short(fields: &mut ByteFields<'_>) -> Option<f64> {
     let bits = fields.u32()?;
-    let value = if bits & 2 != 0 {
-        f64::from(bits.cast_signed() >> 2)
-    } else {
-        f64::from_bits(u64::from(bits & !3) << 32)
-    };
+    let value =
+        if bits & 2 != 0 { f64::from(bits.cast_signed() >> 2) } else { f64::from_bits(u64::from(bits & !3) << 32) };
     Some(if bits & 1 != 0 { value / 100.0 } else { value })
 }
 

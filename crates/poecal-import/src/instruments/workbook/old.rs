@@ -88,12 +88,14 @@ fn read_shared(stream: &[u8]) -> Result<(WorkbookContext, Vec<(usize, String)>),
         let mut data = ByteFields(parts.first().copied().unwrap_or_default());
         match kind {
             kind::BEGIN if data.u16() != Some(VERSION) => {
-                return Err("found a workbook of Excel 95 or earlier, expected one of Excel 97 or later: save it as .xlsx".to_owned());
+                return Err(
+                    "found a workbook of Excel 95 or earlier, expected one of Excel 97 or later: save it as .xlsx"
+                        .to_owned(),
+                );
             }
             kind::LOCKED => {
                 return Err(
-                    "found a workbook with a password, expected one without: save its table as `CSV UTF-8`"
-                        .to_owned(),
+                    "found a workbook with a password, expected one without: save its table as `CSV UTF-8`".to_owned()
                 );
             }
             kind::DATES => shared.is_1904 = data.u16() == Some(1),
@@ -110,12 +112,7 @@ fn read_shared(stream: &[u8]) -> Result<(WorkbookContext, Vec<(usize, String)>),
 
 impl WorkbookContext {
     /// Reads the cells of a sheet.
-    fn read(
-        &self,
-        stream: &[u8],
-        cells: &mut SheetCells,
-        left: &mut RemainingAllowance,
-    ) -> Result<(), String> {
+    fn read(&self, stream: &[u8], cells: &mut SheetCells, left: &mut RemainingAllowance) -> Result<(), String> {
         // The cell of a formula whose text follows in a record of its own.
         let mut waiting = None;
         for Record { kind, parts } in StreamRecords(ByteFields(stream)) {
@@ -135,9 +132,7 @@ impl WorkbookContext {
                     waiting = (*first == 0).then_some(place);
                     None
                 }
-                (kind::NUMBER | kind::FORMULA, _) => {
-                    read_long(&mut data).and_then(|it| self.number(it, style))
-                }
+                (kind::NUMBER | kind::FORMULA, _) => read_long(&mut data).and_then(|it| self.number(it, style)),
                 (kind::SHORT, _) => read_short(&mut data).and_then(|it| self.number(it, style)),
                 (kind::LABEL | kind::RICH, _) => text(&mut data).map(Data::String),
                 (kind::OF_TEXTS, _) => self.text(&mut data),
@@ -293,11 +288,7 @@ mod tests {
             cell(kind::NUMBER, [1, 0, 0], &number(1.5)),
             // 250 hundredths, and the upper half of 0.25.
             cell(kind::SHORT, [1, 1, 0], &(250_u32 << 2 | 3).to_le_bytes()),
-            cell(
-                kind::SEVERAL,
-                [1, 2, 0],
-                &[&(0.25_f64.to_bits() >> 32).to_le_bytes()[..4], &[2, 0]].concat(),
-            ),
+            cell(kind::SEVERAL, [1, 2, 0], &[&(0.25_f64.to_bits() >> 32).to_le_bytes()[..4], &[2, 0]].concat()),
             cell(kind::NUMBER, [2, 0, 1], &number(2.0)),
             cell(kind::FORMULA, [2, 1, 0], &[&number(7.0)[..], &[0; 8]].concat()),
             cell(kind::FORMULA, [2, 2, 0], &[0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0, 0]),
@@ -333,10 +324,7 @@ mod tests {
         let mut cells = example();
         cells.push(cell(kind::NUMBER, [65_535, 16_000, 0], &1.0_f64.to_le_bytes()));
         let error = sheets(&container(&stream(&cells))).unwrap_err();
-        assert!(
-            error.starts_with("found a sheet of 65536 rows and 16001 columns, expected at most"),
-            "{error}"
-        );
+        assert!(error.starts_with("found a sheet of 65536 rows and 16001 columns, expected at most"), "{error}");
         let few = limits::current_limits().with_limit(ResourceLimit::Cells, 11);
         assert!(limits::run_with_limits(few, || sheets(&container(&stream(&example())))).is_err());
     }

@@ -76,12 +76,8 @@ impl<'a> Builder<'a> {
                 builder.kept_input(reading, reading_quantity(robot, name), &purpose)?;
                 continue;
             }
-            let spec = map
-                .joints
-                .get(name)
-                .or_else(|| motors.get(name))
-                .or_else(|| numbers.get(name))
-                .unwrap_or(&default);
+            let spec =
+                map.joints.get(name).or_else(|| motors.get(name)).or_else(|| numbers.get(name)).unwrap_or(&default);
             let found = builder.spec_input(name, spec, reading_quantity(robot, name), &purpose);
             found.map_err(|error| error.if_missing(MissingColumn::Joint))?;
         }
@@ -115,13 +111,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a number from a column or a constant.
-    pub(crate) fn spec_input(
-        &mut self,
-        name: &str,
-        spec: &ColumnSpec,
-        quantity: Unit,
-        purpose: &str,
-    ) -> Result<usize> {
+    pub(crate) fn spec_input(&mut self, name: &str, spec: &ColumnSpec, quantity: Unit, purpose: &str) -> Result<usize> {
         if let Some(unit) = spec.unit.filter(|unit| unit.si_unit() != quantity) {
             NamedUnit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
@@ -143,9 +133,7 @@ impl<'a> Builder<'a> {
         if unit.to_si(value).abs() > LARGEST_NUMBER {
             let si = NamedUnit::from(quantity).symbol();
             return Err(ErrorKind::Measurement
-                .error(format!(
-                    "found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}"
-                ))
+                .error(format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}"))
                 .in_file(&self.map.path));
         }
         Ok(self.constant_input(name, unit.to_si(value), (unit, unit_from)))

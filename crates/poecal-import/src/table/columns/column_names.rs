@@ -12,9 +12,11 @@ pub(crate) fn numbered_column(number: usize) -> String {
 
 /// The name of a column by a number of a mapping.
 pub(crate) fn counted_column<E: serde::de::Error>(number: i64) -> std::result::Result<String, E> {
-    usize::try_from(number).ok().filter(|it| *it > 0).map(numbered_column).ok_or_else(|| {
-        E::custom(format!("found the column {number}, expected its name, or its number from 1"))
-    })
+    usize::try_from(number)
+        .ok()
+        .filter(|it| *it > 0)
+        .map(numbered_column)
+        .ok_or_else(|| E::custom(format!("found the column {number}, expected its name, or its number from 1")))
 }
 
 /// A column by its name or its number.
@@ -44,9 +46,7 @@ impl Visitor<'_> for ColumnNameVisitor {
     }
 }
 
-pub(crate) fn column_name<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<String>, D::Error> {
+pub(crate) fn column_name<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<String>, D::Error> {
     ColumnName::deserialize(deserializer).map(|it| Some(it.0))
 }
 
@@ -56,9 +56,7 @@ pub(crate) fn three_columns<'de, D: Deserializer<'de>>(
     <[ColumnName; 3]>::deserialize(deserializer).map(|it| Some(it.map(|it| it.0)))
 }
 
-pub(crate) fn some_columns<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Vec<String>, D::Error> {
+pub(crate) fn some_columns<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Vec<String>, D::Error> {
     column_names(deserializer).map(Option::unwrap_or_default)
 }
 

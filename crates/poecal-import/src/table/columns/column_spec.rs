@@ -51,16 +51,11 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
         let spec = ColumnSpec::deserialize(MapAccessDeserializer::new(map))?;
-        let given = [
-            ("column", spec.column.is_some()),
-            ("columns", spec.columns.is_some()),
-            ("value", spec.value.is_some()),
-        ];
+        let given =
+            [("column", spec.column.is_some()), ("columns", spec.columns.is_some()), ("value", spec.value.is_some())];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         if let (Some(first), Some(second)) = (given.next(), given.next()) {
-            return Err(A::Error::custom(format!(
-                "found both `{first}` and `{second}`, expected one of them"
-            )));
+            return Err(A::Error::custom(format!("found both `{first}` and `{second}`, expected one of them")));
         }
         spec.columns.as_ref().map_or(Ok(()), check_columns)?;
         if [spec.value, spec.offset].into_iter().flatten().any(|value| !value.is_finite()) {
@@ -81,9 +76,8 @@ fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::r
         ));
     }
     if let Some((name, factor)) = columns.iter().find(|(_, factor)| !factor.is_normal()) {
-        let message = format!(
-            "found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1"
-        );
+        let message =
+            format!("found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1");
         return Err(E::custom(message));
     }
     Ok(())

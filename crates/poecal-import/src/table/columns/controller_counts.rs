@@ -14,8 +14,7 @@ impl Builder<'_> {
     pub(crate) fn third_axis(&mut self, robot: &Robot, names: &[String], counts: ThirdAxis) -> Result<()> {
         let in_map = |message: String| Err(ErrorKind::Measurement.error(message).in_file(&self.map.path));
         let at = |name: &String| names.iter().position(|it| it == name);
-        let found =
-            level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, factor)));
+        let found = level(robot).and_then(|(second, third, factor)| Some((at(&second)?, at(&third)?, factor)));
         let Some((second, third, factor)) = found else {
             return in_map(format!(
                 "found `third_axis = \"{}\"`, expected a robot whose second and third axes are parallel",
@@ -51,12 +50,7 @@ impl Builder<'_> {
     }
 
     /// Adds a joint's reading by its columns in the calibration; units of the file precede the units there.
-    pub(crate) fn kept_input(
-        &mut self,
-        kept: &ControllerReading,
-        quantity: Unit,
-        purpose: &str,
-    ) -> Result<()> {
+    pub(crate) fn kept_input(&mut self, kept: &ControllerReading, quantity: Unit, purpose: &str) -> Result<()> {
         let name = kept.reading.as_str();
         let column = |(column, it): (&'_ String, &ControllerColumn)| {
             let unit = NamedUnit::parse_for(&it.unit, quantity, &format!(" {purpose}"))?;
@@ -68,13 +62,7 @@ impl Builder<'_> {
                 self.constant_input(name, kept.offset, (NamedUnit::from(quantity), UnitSource::Mapping));
             }
             [(column, factor, unit)] if *factor == 1.0 && kept.offset == 0.0 => {
-                self.column_or(
-                    name,
-                    column,
-                    quantity,
-                    (None, unit.map(|unit| (unit, UnitSource::Mapping))),
-                    purpose,
-                )?;
+                self.column_or(name, column, quantity, (None, unit.map(|unit| (unit, UnitSource::Mapping))), purpose)?;
             }
             _ => {
                 let at = self.joined_input(name, &columns, quantity, None, purpose)?;
@@ -97,13 +85,10 @@ impl Builder<'_> {
     ) -> Result<usize> {
         if !self.readings.contains(name) {
             return Err(ErrorKind::Measurement
-                .error(format!(
-                    "found `columns` {purpose}, expected one column: only joints are sums of columns"
-                ))
+                .error(format!("found `columns` {purpose}, expected one column: only joints are sums of columns"))
                 .in_file(&self.map.path));
         }
-        let columns: Vec<_> =
-            columns.iter().map(|(column, &factor)| (column.clone(), factor, None)).collect();
+        let columns: Vec<_> = columns.iter().map(|(column, &factor)| (column.clone(), factor, None)).collect();
         self.joined_input(name, &columns, quantity, unit, purpose)
     }
 

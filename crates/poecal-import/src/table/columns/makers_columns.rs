@@ -8,8 +8,7 @@ use poecal_numerics::unit::Unit;
 impl Builder<'_> {
     /// True if the position is in columns X, Y, Z, in capital letters.
     pub(super) fn has_large_axes(&self) -> bool {
-        !["x", "y", "z"].iter().any(|name| self.has(name))
-            && ["X", "Y", "Z"].iter().all(|name| self.has(name))
+        !["x", "y", "z"].iter().any(|name| self.has(name)) && ["X", "Y", "Z"].iter().all(|name| self.has(name))
     }
 
     /// The convention of a maker whose columns the header has beside its X, Y, Z, and these columns. All have units or none, and numbers in the
@@ -17,26 +16,18 @@ impl Builder<'_> {
     /// first row.
     pub(super) fn convention(&self) -> Option<(&'static OrientationConvention, Vec<String>)> {
         let has_mapped_position = self.map.position.is_some();
-        let first: Vec<Option<f64>> =
-            self.first_numbers().filter(|_| self.has_large_axes() && !has_mapped_position)?;
+        let first: Vec<Option<f64>> = self.first_numbers().filter(|_| self.has_large_axes() && !has_mapped_position)?;
         let is_stated = |at: usize, quantity| Some(self.header.unit(at, quantity, "").ok()?.is_some());
         let is_placed = is_stated(self.header.find("X").ok()??, Unit::Metre)?;
         CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
             let quantity = it.form.quantity();
-            let at =
-                it.columns.iter().map(|name| self.makers_column(name)).collect::<Option<Vec<usize>>>()?;
+            let at = it.columns.iter().map(|name| self.makers_column(name)).collect::<Option<Vec<usize>>>()?;
             let are_stated = at.iter().map(|at| is_stated(*at, quantity)).collect::<Option<Vec<bool>>>()?;
             let numbers = at.iter().map(|at| *first.get(*at)?).collect::<Option<Vec<f64>>>()?;
             let is_alike = quantity == Unit::One || are_stated.iter().all(|it| *it == is_placed);
             let is_known = is_placed || self.header.units_line.is_none();
             (is_alike && is_known && it.form.rotation(&numbers).is_ok()).then(|| {
-                (
-                    it,
-                    at.iter()
-                        .filter_map(|at| self.header.cells.get(*at))
-                        .map(|cell| cell.name.clone())
-                        .collect(),
-                )
+                (it, at.iter().filter_map(|at| self.header.cells.get(*at)).map(|cell| cell.name.clone()).collect())
             })
         })
     }
@@ -47,9 +38,7 @@ impl Builder<'_> {
         let is_it = |text: &str| text == name || letter.is_some() && text.eq_ignore_ascii_case(name);
         // Joints may be named q1 to q6.
         let numbers = letter.map(|letter| {
-            let of = |text: &str| {
-                text.to_lowercase().strip_prefix(letter).is_some_and(|it| it.parse::<u32>().is_ok())
-            };
+            let of = |text: &str| text.to_lowercase().strip_prefix(letter).is_some_and(|it| it.parse::<u32>().is_ok());
             self.header.cells.iter().filter(|cell| of(&cell.name)).count()
         });
         let mut cells = self.header.cells.iter().enumerate();

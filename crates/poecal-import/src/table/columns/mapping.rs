@@ -8,9 +8,7 @@ use serde::Deserialize;
 use super::super::cells::Separator;
 use super::super::column_names::{column_name, column_names, number_of_column, some_columns, three_columns};
 use super::super::column_spec::ColumnSpec;
-use super::super::mapping_values::{
-    angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis,
-};
+use super::super::mapping_values::{angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis};
 use super::super::number::DecimalSign;
 use super::super::orientation::OrientationForm;
 use super::motors::Motors;
@@ -29,7 +27,6 @@ use poecal_storage::source_text;
 pub struct ColumnMap {
     #[serde(skip)]
     pub(crate) path: PathBuf,
-    /// LeRobot's calibration of motors, in place of a mapping.
     #[serde(skip)]
     pub(crate) motors: Option<Motors>,
     #[serde(deserialize_with = "separator")]
@@ -145,11 +142,7 @@ impl ColumnMap {
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         ColumnMap::parse(
-            &source_text::read_up_to(
-                path,
-                "a column mapping (TOML, or LeRobot's JSON)",
-                ResourceLimit::Settings,
-            )?,
+            &source_text::read_up_to(path, "a column mapping (TOML, or LeRobot's JSON)", ResourceLimit::Settings)?,
             path,
         )
     }
@@ -162,11 +155,13 @@ impl ColumnMap {
         ColumnMap::parse_at(text, path.as_ref())
     }
 
-    /// Compiled once, and not for each kind of path.
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         if text.trim_start().starts_with('{') {
-            let motors = Some(Motors::parse(text, path)?);
-            return Ok(ColumnMap { motors, path: path.to_path_buf(), ..ColumnMap::default() });
+            return Ok(ColumnMap {
+                motors: Some(Motors::parse(text, path)?),
+                path: path.to_path_buf(),
+                ..ColumnMap::default()
+            });
         }
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
             let mut message = error.message().replace('\n', "; ");
@@ -270,9 +265,7 @@ impl ColumnMap {
             ("sigma_rotation", self.sigma_rotation.is_some()),
         ];
         if let Some((key, _)) = single.iter().find(|(_, given)| *given && !self.targets.is_empty()) {
-            return error(format!(
-                "found both `{key}` and `[[targets]]`, expected `{key}` in each target only"
-            ));
+            return error(format!("found both `{key}` and `[[targets]]`, expected `{key}` in each target only"));
         }
         let mut names = BTreeSet::new();
         for target in &self.targets {

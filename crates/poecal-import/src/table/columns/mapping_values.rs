@@ -32,9 +32,7 @@ pub(crate) fn angle_unit<'de, D: Deserializer<'de>>(
     parsed(deserializer, |text| NamedUnit::parse(text, Unit::Radian))
 }
 
-pub(crate) fn any_unit<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> std::result::Result<Option<NamedUnit>, D::Error> {
+pub(crate) fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<NamedUnit>, D::Error> {
     parsed(deserializer, NamedUnit::parse_any)
 }
 
@@ -50,9 +48,8 @@ pub(crate) fn third_axis<'de, D: Deserializer<'de>>(
     parsed(deserializer, |text| match text {
         "arm" => Ok(ThirdAxis::Arm),
         "level" => Ok(ThirdAxis::Level),
-        _ => ErrorKind::Syntax.refuse(format!(
-            "found the third axis `{text}`, expected `arm` or `level`, from which it counts"
-        )),
+        _ => ErrorKind::Syntax
+            .refuse(format!("found the third axis `{text}`, expected `arm` or `level`, from which it counts")),
     })
 }
 
@@ -64,8 +61,9 @@ pub(crate) fn separator<'de, D: Deserializer<'de>>(
         ";" => Ok(Separator::Semicolon),
         "\t" | "tab" => Ok(Separator::Tab),
         " " | "whitespace" => Ok(Separator::Whitespace),
-        _ => ErrorKind::Syntax
-            .refuse(format!("found the separator `{text}`, expected `,`, `;`, `tab` or `whitespace`")),
+        _ => {
+            ErrorKind::Syntax.refuse(format!("found the separator `{text}`, expected `,`, `;`, `tab` or `whitespace`"))
+        }
     })
 }
 

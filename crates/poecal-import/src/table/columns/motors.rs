@@ -119,8 +119,7 @@ impl Motors {
             "deg" | "degrees" | "°" => (DIVISOR / TICKS, 0.0, degrees),
             "%" | "percent" => (turned * (most - least) / 200.0, 0.0, ticks),
             other => {
-                let found =
-                    if other.is_empty() { "no unit".to_owned() } else { format!("the unit `{other}`") };
+                let found = if other.is_empty() { "no unit".to_owned() } else { format!("the unit `{other}`") };
                 return Err(header.error(
                     ErrorKind::Measurement,
                     index,

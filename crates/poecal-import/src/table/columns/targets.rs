@@ -64,11 +64,8 @@ impl Builder<'_> {
         let own_form = if by_names { self.own_form()? } else { None };
         let convention = if by_names && own_form.is_none() { self.convention() } else { None };
         let usual = |quantity| convention.as_ref().and_then(|it| it.0.usual_unit(quantity));
-        let position = if is_placed {
-            Some(self.position(&prefix, &target.position, usual(Unit::Metre))?)
-        } else {
-            None
-        };
+        let position =
+            if is_placed { Some(self.position(&prefix, &target.position, usual(Unit::Metre))?) } else { None };
         let orientation = match (&target.orientation, own_form, &convention) {
             (Some(spec), ..) => Some(self.mapped_orientation(&prefix, spec)?),
             (None, Some(form), _) => Some(self.orientation(form, form.part_names(), None)?),
@@ -116,10 +113,8 @@ impl Builder<'_> {
             if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
                 continue;
             }
-            let (dimension, purpose) = (
-                function.leading_quantity().unit(),
-                format!("for the {}", function.leading_quantity().name()),
-            );
+            let (dimension, purpose) =
+                (function.leading_quantity().unit(), format!("for the {}", function.leading_quantity().name()));
             let mut numbers = Vec::with_capacity(columns.numbers.len());
             let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
             for &name in names.collect::<Vec<_>>() {
@@ -156,12 +151,7 @@ impl Builder<'_> {
         Ok(index)
     }
 
-    fn position(
-        &mut self,
-        prefix: &str,
-        spec: &PositionSpec,
-        usual: Option<NamedUnit>,
-    ) -> Result<[usize; 3]> {
+    fn position(&mut self, prefix: &str, spec: &PositionSpec, usual: Option<NamedUnit>) -> Result<[usize; 3]> {
         let mut indices = [0; 3];
         for (i, (axis, index)) in ["x", "y", "z"].into_iter().zip(&mut indices).enumerate() {
             let own = if self.has_large_axes() { ["X", "Y", "Z"][i] } else { axis };
@@ -174,11 +164,7 @@ impl Builder<'_> {
         Ok(indices)
     }
 
-    fn mapped_orientation(
-        &mut self,
-        prefix: &str,
-        spec: &OrientationSpec,
-    ) -> Result<(OrientationForm, Vec<usize>)> {
+    fn mapped_orientation(&mut self, prefix: &str, spec: &OrientationSpec) -> Result<(OrientationForm, Vec<usize>)> {
         let indices = spec.columns.iter().zip(spec.form.part_names()).map(|(column, name)| {
             let purpose = format!("for the {}orientation ({})", prefix, spec.form);
             self.column_input(&format!("{prefix}{name}"), column, spec.form.quantity(), spec.unit, &purpose)
@@ -202,9 +188,8 @@ impl Builder<'_> {
                 };
                 match chosen {
                     Some((other, first)) if other != form => {
-                        let message = format!(
-                            "found the orientation columns `{first}` and `{name}`, expected one form only"
-                        );
+                        let message =
+                            format!("found the orientation columns `{first}` and `{name}`, expected one form only");
                         return Err(self.header.error(ErrorKind::Measurement, index, message));
                     }
                     Some(_) => {}
@@ -225,8 +210,7 @@ impl Builder<'_> {
         let purpose = format!("for the orientation ({form})");
         let units = (None, self.makers_unit(usual));
         let names = columns.iter().zip(form.part_names());
-        let indices =
-            names.map(|(column, name)| self.column_or(name, column, form.quantity(), units, &purpose));
+        let indices = names.map(|(column, name)| self.column_or(name, column, form.quantity(), units, &purpose));
         Ok((form, indices.collect::<Result<_>>()?))
     }
 

@@ -54,10 +54,7 @@ fn describe_unread_columns(header: &Header<'_>, layout: &ColumnLayout) -> Option
     let mapping = |form: &str, cells: &[&HeaderCell]| {
         let is_stated = cells.len() > 3 || cells.iter().all(|cell| cell.unit.is_some());
         let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
-        (
-            columns.join(", "),
-            orientation_mapping(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }),
-        )
+        (columns.join(", "), orientation_mapping(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }))
     };
     let known = CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
         // Joints may be named q1 to q6.
@@ -76,11 +73,7 @@ fn describe_unread_columns(header: &Header<'_>, layout: &ColumnLayout) -> Option
 }
 
 /// Columns of a rotation vector in the order of rotations about z, y, x.
-fn describe_reversed_columns(
-    header: &Header<'_>,
-    layout: &ColumnLayout,
-    columns: &[usize],
-) -> Option<String> {
+fn describe_reversed_columns(header: &Header<'_>, layout: &ColumnLayout, columns: &[usize]) -> Option<String> {
     let place = |&input: &usize| match layout.inputs.get(input)?.source {
         InputSource::Column(column) => Some(column),
         InputSource::Constant(_) => None,
@@ -89,12 +82,8 @@ fn describe_reversed_columns(
     if !matches!(places.as_slice(), [x, y, z] if z < y && y < x) {
         return None;
     }
-    let names: Vec<&str> = places
-        .iter()
-        .rev()
-        .filter_map(|&place| header.cells.get(place))
-        .map(|cell| cell.name.as_str())
-        .collect();
+    let names: Vec<&str> =
+        places.iter().rev().filter_map(|&place| header.cells.get(place)).map(|cell| cell.name.as_str()).collect();
     Some(format!(
         "the columns {} are read as a rotation vector, and stand in the order of turns about z, then the new y, then the new x: if \
          they are these, a mapping (--columns) with {} has them read so",
@@ -173,9 +162,7 @@ mod tests {
              `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` reads them as poses"
         ));
         assert!(told("q1,q2,q3,q4", "1,0,0,0").contains("form = \"quaternion_wxyz\""));
-        for (header, turn) in
-            [("rx,ry,rz", "0.1,0.2,0.3"), ("A,B", "1,2"), ("q1,q2,q3,q4,q5,q6", "1,2,3,4,5,6")]
-        {
+        for (header, turn) in [("rx,ry,rz", "0.1,0.2,0.3"), ("A,B", "1,2"), ("q1,q2,q3,q4,q5,q6", "1,2,3,4,5,6")] {
             assert_eq!(told(header, turn), "", "{header}");
         }
     }
@@ -192,30 +179,10 @@ mod tests {
             rotation::from_rpy(roll.to_radians(), pitch.to_radians(), yaw.to_radians())
         };
         for (header, turn, expected, note) in [
-            (
-                "X,Y,Z,A,B,C",
-                "10,20,30",
-                turned(30.0, 20.0, 10.0),
-                "A, B, C for KUKA's A, B, C, in mm and deg, since",
-            ),
-            (
-                "X,Y,Z,W,P,R",
-                "10,20,30",
-                turned(10.0, 20.0, 30.0),
-                "W, P, R for FANUC's W, P, R, in mm and deg, since",
-            ),
-            (
-                "X[mm],Y[mm],Z[mm],A[deg],B[deg],C[deg]",
-                "10,20,30",
-                turned(30.0, 20.0, 10.0),
-                "KUKA's A, B, C",
-            ),
-            (
-                "X,Y,Z,q1,q2,q3,q4",
-                "0,1,0,0",
-                turned(180.0, 0.0, 0.0),
-                "ABB's quaternion, q1 real, in mm, since",
-            ),
+            ("X,Y,Z,A,B,C", "10,20,30", turned(30.0, 20.0, 10.0), "A, B, C for KUKA's A, B, C, in mm and deg, since"),
+            ("X,Y,Z,W,P,R", "10,20,30", turned(10.0, 20.0, 30.0), "W, P, R for FANUC's W, P, R, in mm and deg, since"),
+            ("X[mm],Y[mm],Z[mm],A[deg],B[deg],C[deg]", "10,20,30", turned(30.0, 20.0, 10.0), "KUKA's A, B, C"),
+            ("X,Y,Z,q1,q2,q3,q4", "0,1,0,0", turned(180.0, 0.0, 0.0), "ABB's quaternion, q1 real, in mm, since"),
         ] {
             let file = read(header, turn);
             let pose = file.data.observations[0].measurement.pose();
@@ -229,20 +196,13 @@ mod tests {
             ("X[mm],Y[mm],Z[mm],A,B,C", "10,20,30"),
             ("X[mm],Y[mm],Z[mm],q1,q2,q3,q4", "21,22,23,24"),
         ] {
-            let text = format!(
-                "joint1,joint2,joint3,joint4,{}\n{row},{turn}\n",
-                header.replace("X,Y,Z", "X[mm],Y[mm],Z[mm]")
-            );
+            let text =
+                format!("joint1,joint2,joint3,joint4,{}\n{row},{turn}\n", header.replace("X,Y,Z", "X[mm],Y[mm],Z[mm]"));
             let file = parse(&text, "t.csv", &scara(), &ReadOptions::default()).unwrap();
             assert!(file.data.observations[0].measurement.orientation().is_none(), "{header}");
-            assert!(
-                file.warnings.iter().any(|it| it.contains("the rows read as points")),
-                "{:?}",
-                file.warnings
-            );
+            assert!(file.warnings.iter().any(|it| it.contains("the rows read as points")), "{:?}", file.warnings);
         }
-        let noisy =
-            "joint1,joint2,joint3,joint4,X,Y,Z,A,B,C,sigma_position\n0,0.1,0.1,0,600,50,100,10,20,30,0.05\n";
+        let noisy = "joint1,joint2,joint3,joint4,X,Y,Z,A,B,C,sigma_position\n0,0.1,0.1,0,600,50,100,10,20,30,0.05\n";
         let file = parse(noisy, "t.csv", &scara(), &ReadOptions::default()).unwrap();
         let sigma = file.understood[0].columns.iter().find(|it| it.name == "sigma_position").unwrap();
         assert_eq!(sigma.unit, Some("mm"));

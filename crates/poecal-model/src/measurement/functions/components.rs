@@ -5,9 +5,7 @@ use nalgebra::Vector3;
 use super::FunctionRow;
 use super::point::XYZ;
 use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
-use crate::measurement::{
-    Channels, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity,
-};
+use crate::measurement::{Channels, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity};
 use poecal_arm::lie::Freedom;
 
 /// Channels of the components that are measured, by a bit of each.
@@ -52,9 +50,7 @@ static COMPONENTS: MeasurementFunction = MeasurementFunction {
         0b011 => Freedom::without_slide(2),
         _ => Freedom::FRAME,
     },
-    clue: |values| {
-        InitialGuess::Place([0, 1, 2].map(|k| indices(values).any(|own| own == k).then_some(values[k])))
-    },
+    clue: |values| InitialGuess::Place([0, 1, 2].map(|k| indices(values).any(|own| own == k).then_some(values[k]))),
     ..MeasurementFunction::USUAL
 };
 
@@ -68,8 +64,7 @@ fn indices(values: &MeasuredValues) -> impl Iterator<Item = usize> {
     (0..3).filter(move |k| bits >> k & 1 == 1)
 }
 
-pub(crate) const ROW: FunctionRow =
-    FunctionRow { function: &COMPONENTS, columns: &[], sessions: &[FROM_ABOVE] };
+pub(crate) const ROW: FunctionRow = FunctionRow { function: &COMPONENTS, columns: &[], sessions: &[FROM_ABOVE] };
 
 const FROM_ABOVE: SessionTraits = SessionTraits {
     word: "component",

@@ -6,16 +6,13 @@ use super::FunctionRow;
 use crate::measurement::columns::{FormCriterion, MeasurementColumns};
 use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
 use crate::measurement::{
-    Channel, Channels, Device, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity,
-    Sensitivity,
+    Channel, Channels, Device, InitialGuess, MeasuredValues, Measurement, MeasurementFunction, Quantity, Sensitivity,
 };
 use poecal_arm::lie::{Freedom, Pose, rotation, series};
 
 /// Channels of two tilts.
-pub(crate) const TILTS: [Channel; 2] = [
-    Channel { name: "tilt_x", quantity: Quantity::Tilt },
-    Channel { name: "tilt_y", quantity: Quantity::Tilt },
-];
+pub(crate) const TILTS: [Channel; 2] =
+    [Channel { name: "tilt_x", quantity: Quantity::Tilt }, Channel { name: "tilt_y", quantity: Quantity::Tilt }];
 
 static CHANNELS: Channels = Channels::new(&TILTS);
 

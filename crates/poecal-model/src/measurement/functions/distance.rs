@@ -3,9 +3,7 @@
 use super::FunctionRow;
 use crate::measurement::columns::{FormCriterion, MeasurementColumns};
 use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
-use crate::measurement::{
-    Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
-};
+use crate::measurement::{Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity};
 use poecal_arm::lie::Freedom;
 
 static CHANNELS: Channels = Channels::new(&[Channel { name: "distance", quantity: Quantity::Distance }]);
@@ -34,8 +32,7 @@ static DISTANCE: MeasurementFunction = READ;
 
 /// The same function with an unknown zero of the instrument's readings, so that only changes count: of an interferometer, of a sphere whose
 /// radius is unknown (theory.md §4 (15d)).
-static CHANGE: MeasurementFunction =
-    MeasurementFunction { name: "distance change", zero_is_unknown: true, ..READ };
+static CHANGE: MeasurementFunction = MeasurementFunction { name: "distance change", zero_is_unknown: true, ..READ };
 
 pub(crate) const ROW: FunctionRow = FunctionRow {
     function: &DISTANCE,
@@ -83,9 +80,7 @@ const ANCHORS: SessionTraits = SessionTraits {
     function: &DISTANCE,
     places: &["wall", "floor", "door"],
     stands: StationLayout::Around,
-    drawn: MeasurementOrigin::Seen(|target, drawn| {
-        Measurement::distance(target.translation.norm() + drawn.length.x)
-    }),
+    drawn: MeasurementOrigin::Seen(|target, drawn| Measurement::distance(target.translation.norm() + drawn.length.x)),
     columns: &["anchor", "distance[mm]"],
     about: "# anchor      from where the distance was measured; three places or more tell most. Where they are is found.\n\
             # distance    from there to the target.\n",

@@ -37,11 +37,7 @@ static FLUSH: MeasurementFunction = MeasurementFunction {
         let axis = (0..3).find(|&k| values[1 + k].abs() == 1.0);
         axis.map_or(Freedom::FRAME, Freedom::plane)
     },
-    clue: |values| InitialGuess::Height {
-        point: Vector3::zeros(),
-        height: values[0],
-        up: Some(normal(values)),
-    },
+    clue: |values| InitialGuess::Height { point: Vector3::zeros(), height: values[0], up: Some(normal(values)) },
     ..MeasurementFunction::USUAL
 };
 

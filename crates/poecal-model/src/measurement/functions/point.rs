@@ -4,9 +4,7 @@ use nalgebra::Vector3;
 
 use super::FunctionRow;
 use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
-use crate::measurement::{
-    Channel, Channels, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
-};
+use crate::measurement::{Channel, Channels, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity};
 
 /// Channels of a position.
 pub(crate) const XYZ: [Channel; 3] = [

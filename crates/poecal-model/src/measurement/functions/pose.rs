@@ -4,9 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::FunctionRow;
 use super::point::XYZ;
-use crate::measurement::session::{
-    MeasurementOrigin, RandomDraws, SessionKind, SessionTraits, StationLayout,
-};
+use crate::measurement::session::{MeasurementOrigin, RandomDraws, SessionKind, SessionTraits, StationLayout};
 use crate::measurement::{
     Channel, Channels, InitialGuess, Kernel, MeasuredValues, Measurement, MeasurementFunction, Quantity,
 };
@@ -62,8 +60,7 @@ fn frame(values: &MeasuredValues) -> Pose {
     Pose::new(Matrix3::from_column_slice(columns), Vector3::new(*x, *y, *z))
 }
 
-pub(crate) const ROW: FunctionRow =
-    FunctionRow { function: &POSE, columns: &[], sessions: &[POSES, MIXED, RELATIVE] };
+pub(crate) const ROW: FunctionRow = FunctionRow { function: &POSE, columns: &[], sessions: &[POSES, MIXED, RELATIVE] };
 
 const POSES: SessionTraits = SessionTraits {
     word: "pose",

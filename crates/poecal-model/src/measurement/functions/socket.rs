@@ -5,9 +5,7 @@ use nalgebra::Vector3;
 use super::FunctionRow;
 use crate::measurement::columns::{FormCriterion, MeasurementColumns};
 use crate::measurement::session::{MeasurementOrigin, SessionKind, SessionTraits, StationLayout};
-use crate::measurement::{
-    Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity,
-};
+use crate::measurement::{Channel, Channels, Device, InitialGuess, Kernel, Measurement, MeasurementFunction, Quantity};
 use poecal_arm::lie::Freedom;
 
 static CONTACT: Channels = Channels::new(&[

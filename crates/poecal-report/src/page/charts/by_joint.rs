@@ -32,8 +32,7 @@ impl DrawnResidual {
 
     /// One range for all joints, so that they compare: a few rows with large deviations are left out of sight.
     fn range(&self, rows: &[&DrawnRow]) -> [f64; 2] {
-        let values =
-            || (0..self.values.len()).flat_map(|k| rows.iter().filter_map(move |row| self.value(k, row)));
+        let values = || (0..self.values.len()).flat_map(|k| rows.iter().filter_map(move |row| self.value(k, row)));
         let mut sizes: Vec<f64> = values().map(f64::abs).collect();
         sizes.sort_by(f64::total_cmp);
         let most = round_for_picture(1.3 * quantile(&sizes, 0.995));
@@ -42,12 +41,7 @@ impl DrawnResidual {
     }
 
     /// The axis with the smoothed curve through its values over a reading, of rows sorted by that reading.
-    fn side(
-        &self,
-        (reading, name): (usize, &str),
-        rows: &[(&DrawnRow, f64)],
-        range: [f64; 2],
-    ) -> VerticalAxis {
+    fn side(&self, (reading, name): (usize, &str), rows: &[(&DrawnRow, f64)], range: [f64; 2]) -> VerticalAxis {
         let points: Vec<[f64; 2]> =
             rows.iter().filter_map(|(row, at)| Some([*at, self.value(reading, row)?])).collect();
         let curve = SmoothCurve::from_points(&points);
@@ -61,18 +55,14 @@ impl DrawnResidual {
         let told = curve.as_ref().map_or_else(
             || "too few rows for a smoothed curve".to_owned(),
             |curve| {
-                let [swing, deviation] =
-                    [curve.swing(), curve.deviation()].map(|it| with_unit(it, self.unit));
+                let [swing, deviation] = [curve.swing(), curve.deviation()].map(|it| with_unit(it, self.unit));
                 format!("the smoothed curve swings by {swing}, with a standard deviation of {deviation}")
             },
         );
         VerticalAxis {
             y: PlotAxis::new(&format!("residual, {}", self.unit), AxisScale::Close).with_values(&range),
             spoken: format!("Residual {} over {name}; {told}.", self.name),
-            shapes: vec![
-                PlotShape { class: "band", pieces: bands },
-                PlotShape { class: "ink line", pieces: lines },
-            ],
+            shapes: vec![PlotShape { class: "band", pieces: bands }, PlotShape { class: "ink line", pieces: lines }],
         }
     }
 }

@@ -9,9 +9,7 @@ use maud::{Markup, html};
 
 use crate::page::data::{DrawnRow, place, round_for_picture};
 use crate::page::leading_error::{LeadingError, component_words, sign};
-use crate::plot::{
-    AxisScale, DotSeries, Graph, PlotAxis, PlotShape, VerticalAxis, normal_quantile, quantile,
-};
+use crate::plot::{AxisScale, DotSeries, Graph, PlotAxis, PlotShape, VerticalAxis, normal_quantile, quantile};
 use crate::table::number;
 use poecal_results::residuals::{ResidualRow, Residuals};
 
@@ -108,8 +106,7 @@ impl<'a> Charts<'a> {
                 _ => row.suspected,
             };
             let size = if class == "alarm" { size + AROUND } else { size };
-            let points: Vec<Option<[f64; 2]>> =
-                rows.iter().filter(|row| is_of(row)).map(|row| place(row)).collect();
+            let points: Vec<Option<[f64; 2]>> = rows.iter().filter(|row| is_of(row)).map(|row| place(row)).collect();
             if points.iter().any(Option::is_some) {
                 keys.push((class, words));
             }
@@ -128,19 +125,14 @@ impl<'a> Charts<'a> {
         let number = |row: &DrawnRow| (row.index + 1) as f64;
         let (dots, found) = self.by_set(&rows, |row| Some([number(row), self.error(row)?]));
         let larger = |a: &&&DrawnRow, b: &&&DrawnRow| {
-            self.error(a)
-                .unwrap_or_default()
-                .total_cmp(&self.error(b).unwrap_or_default())
-                .then(b.index.cmp(&a.index))
+            self.error(a).unwrap_or_default().total_cmp(&self.error(b).unwrap_or_default()).then(b.index.cmp(&a.index))
         };
         let largest = rows.iter().max_by(larger).map_or_else(String::new, |row| self.describe_row(row));
         let (name, unit) = (self.lead.name(), self.lead.unit());
-        let spoken =
-            format!("Error of {name} in {} rows in the order read; the largest is {largest}.", rows.len());
+        let spoken = format!("Error of {name} in {} rows in the order read; the largest is {largest}.", rows.len());
         let y = axis(&format!("{name} error, {unit}"), rows.iter().filter_map(|row| self.error(row)), true);
         let x = axis("row, in the order read", rows.iter().map(|row| number(row)), false).in_steps(12.0);
-        let graph =
-            Graph { x, size: WIDE, dots, sides: vec![VerticalAxis { y, spoken, shapes: Vec::new() }] };
+        let graph = Graph { x, size: WIDE, dots, sides: vec![VerticalAxis { y, spoken, shapes: Vec::new() }] };
         html! { (keys(&found)) (graph.svg()) (readout()) }
     }
 
@@ -155,8 +147,7 @@ impl<'a> Charts<'a> {
     /// Each component of each quantity: its name, its unit, its index among the columns of the page's data, and the values of some rows.
     pub(crate) fn components(&self) -> Vec<Component> {
         let measured = self.residuals.measured_quantities().into_iter().enumerate();
-        let all =
-            measured.flat_map(|(at, quantity)| (0..quantity.components()).map(move |k| (at, quantity, k)));
+        let all = measured.flat_map(|(at, quantity)| (0..quantity.components()).map(move |k| (at, quantity, k)));
         let component = |(at, quantity, k): (usize, _, usize)| {
             let value = |drawn: &DrawnRow| {
                 let residual = self.row(drawn)?.errors.get(quantity)?.residual().get(k).copied();
@@ -224,14 +215,12 @@ impl<'a> Charts<'a> {
         let (name, unit) = (self.lead.name(), self.lead.unit());
         let y = axis("share of the rows, %", shares, true);
         let left = if beyond > 0 { format!(" ({beyond} rows beyond are not drawn)") } else { String::new() };
-        let x =
-            PlotAxis::new(&format!("{name} error, {unit}{left}"), AxisScale::Close).with_values(&[0.0, most]);
+        let x = PlotAxis::new(&format!("{name} error, {unit}{left}"), AxisScale::Close).with_values(&[0.0, most]);
         let spoken = format!(
             "Histogram of errors of {name} in steps of {}; the tables of errors have mean, RMS, 95 % and largest.",
             with_unit(width, unit)
         );
-        let graph =
-            Graph { x, size: HALF, dots: Vec::new(), sides: vec![VerticalAxis { y, spoken, shapes }] };
+        let graph = Graph { x, size: HALF, dots: Vec::new(), sides: vec![VerticalAxis { y, spoken, shapes }] };
         html! { (keys(&found)) (graph.svg()) }
     }
 
@@ -250,8 +239,7 @@ impl<'a> Charts<'a> {
         let rank = |k: usize| (k * all.saturating_sub(1) + count / 2) / count.saturating_sub(1).max(1);
         let ranks = (0..count).map(|k| rank(k).min(all.saturating_sub(1)));
         let expected = |rank: usize| normal_quantile((rank as f64 + 0.5) / all as f64);
-        let points: Vec<Option<[f64; 2]>> =
-            ranks.map(|rank| Some([expected(rank), *values.get(rank)?])).collect();
+        let points: Vec<Option<[f64; 2]>> = ranks.map(|rank| Some([expected(rank), *values.get(rank)?])).collect();
         let [low, high] = [0.25, 0.75].map(|share| quantile(&values, share));
         let slope = (high - low) / (2.0 * normal_quantile(0.75));
         let ends = [points.first(), points.last()].map(|it| it.copied().flatten().map_or(0.0, |it| it[0]));
@@ -263,11 +251,8 @@ impl<'a> Charts<'a> {
         let ys = points.iter().flatten().chain(&line).map(|it| it[1]);
         let y = axis(&format!("component, {unit}"), ys, false);
         let x = axis("quantile of the normal distribution", ends.into_iter(), false);
-        let sides = vec![VerticalAxis {
-            y,
-            spoken,
-            shapes: vec![PlotShape { class: "soft line", pieces: vec![line] }],
-        }];
+        let sides =
+            vec![VerticalAxis { y, spoken, shapes: vec![PlotShape { class: "soft line", pieces: vec![line] }] }];
         let dots = vec![DotSeries { class: "s0", size: 4, points }];
         let found = [("s0", "components of all rows"), ("soft line", "normal, through the quartiles")];
         html! { (keys(&found)) (Graph { x, size: HALF, dots, sides }.svg()) }
@@ -280,8 +265,7 @@ impl<'a> Charts<'a> {
             let at = [judged.leverage, judged.studentized].map(round_for_picture);
             at.iter().all(|it| it.is_finite()).then_some(at)
         };
-        let judged: Vec<(&DrawnRow, [f64; 2])> =
-            self.rows.iter().filter_map(|row| Some((row, found(row)?))).collect();
+        let judged: Vec<(&DrawnRow, [f64; 2])> = self.rows.iter().filter_map(|row| Some((row, found(row)?))).collect();
         let larger = |a: &&(&DrawnRow, [f64; 2]), b: &&(&DrawnRow, [f64; 2])| a.1[0].total_cmp(&b.1[0]);
         let Some((largest, [most, _])) = judged.iter().max_by(larger) else {
             return html! { p.note { "The rows were not judged." } };
@@ -296,8 +280,7 @@ impl<'a> Charts<'a> {
         );
         let y = axis("studentised residual", judged.iter().map(|it| it.1[1]), true);
         let x = axis("leverage", judged.iter().map(|it| it.1[0]), false);
-        let graph =
-            Graph { x, size: HALF, dots, sides: vec![VerticalAxis { y, spoken, shapes: Vec::new() }] };
+        let graph = Graph { x, size: HALF, dots, sides: vec![VerticalAxis { y, spoken, shapes: Vec::new() }] };
         html! { (keys(&keys_found)) (graph.svg()) (readout()) }
     }
 }
@@ -323,9 +306,6 @@ fn outline(errors: &[f64], width: f64, count: usize) -> Vec<[f64; 2]> {
             *bar += 100.0 / errors.len() as f64;
         }
     }
-    let steps = bars
-        .iter()
-        .enumerate()
-        .flat_map(|(k, bar)| [[width * k as f64, *bar], [width * (k + 1) as f64, *bar]]);
+    let steps = bars.iter().enumerate().flat_map(|(k, bar)| [[width * k as f64, *bar], [width * (k + 1) as f64, *bar]]);
     std::iter::once([0.0, 0.0]).chain(steps).chain([[width * count as f64, 0.0]]).collect()
 }

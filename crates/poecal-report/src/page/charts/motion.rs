@@ -56,8 +56,7 @@ impl<'a> RobotMotions<'a> {
     /// not move relative to the instrument.
     pub(crate) fn residual_along_motions(&self, index: usize) -> Vec<Option<f64>> {
         let mut motion = vec![Vector3::zeros(); self.residuals.readings.len()];
-        let residual =
-            self.residuals.rows().get(index).and_then(|row| self.add_motions(index, row, &mut motion));
+        let residual = self.residuals.rows().get(index).and_then(|row| self.add_motions(index, row, &mut motion));
         let part = |motion: &Vector3<f64>| {
             let length = motion.norm();
             residual.filter(|_| length > STILL).map(|residual| residual.dot(motion) / length)
@@ -67,20 +66,14 @@ impl<'a> RobotMotions<'a> {
 
     /// Adds the motion of a row's target with each reading, and returns its residual, both in the base frame. `None` for residuals that are no
     /// vectors, or whose axes are those of another configuration.
-    fn add_motions(
-        &self,
-        index: usize,
-        row: &ResidualRow,
-        motion: &mut [Vector3<f64>],
-    ) -> Option<Vector3<f64>> {
+    fn add_motions(&self, index: usize, row: &ResidualRow, motion: &mut [Vector3<f64>]) -> Option<Vector3<f64>> {
         let residual = vector_of(row)?;
         let (target, instrument) = (self.targets.get(row.target)?, self.instruments.get(row.station)?);
         if instrument.is_pair {
             return None;
         }
         let bodies = self.bodies(self.residuals.values(index));
-        let motion_of =
-            |body: Body| body.joint().and_then(|at| bodies.get(at)).copied().unwrap_or_else(Pose::identity);
+        let motion_of = |body: Body| body.joint().and_then(|at| bodies.get(at)).copied().unwrap_or_else(Pose::identity);
         let place = (motion_of(target.body) * target.pose).translation;
         for (k, joint) in self.robot.joints.iter().enumerate() {
             // A joint that moves both moves neither relative to the other.
@@ -99,15 +92,11 @@ impl<'a> RobotMotions<'a> {
     fn bodies(&self, values: &[f64]) -> Vec<Pose> {
         let mut bodies: Vec<Pose> = Vec::with_capacity(self.robot.joints.len());
         for (k, joint) in self.robot.joints.iter().enumerate() {
-            let value = self
-                .columns
-                .get(k)
-                .and_then(|at| Some((values.get(*at)?, self.residuals.readings.get(*at)?)));
+            let value = self.columns.get(k).and_then(|at| Some((values.get(*at)?, self.residuals.readings.get(*at)?)));
             let factor = |kind| if unit(kind) == Some("mm") { 1e-3 } else { 1f64.to_radians() };
             let reading = value.map_or(0.0, |(value, (_, kind))| round_for_picture(*value) * factor(*kind));
             let before = self.robot.body_before(k).joint().and_then(|at| bodies.get(at)).copied();
-            bodies
-                .push(before.unwrap_or_else(Pose::identity) * joint.screw.exp(joint.reading.value(reading)));
+            bodies.push(before.unwrap_or_else(Pose::identity) * joint.screw.exp(joint.reading.value(reading)));
         }
         bodies
     }

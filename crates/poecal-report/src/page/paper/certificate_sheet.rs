@@ -164,12 +164,8 @@ fn describe_bounds(limit: &AcceptedLimit) -> String {
 fn validity_sentence(file: &CalibrationFile) -> &'static str {
     match file.verdict.as_ref().map(|verdict| verdict.level) {
         Some(Level::Good) => "Anywhere within the limits of the joints.",
-        Some(Level::InsideSampledRange) => {
-            "Inside the range of the joints that was measured, and not beyond it."
-        }
-        Some(Level::MeasuredConfigurations) => {
-            "In configurations like those that were measured, and in no others."
-        }
+        Some(Level::InsideSampledRange) => "Inside the range of the joints that was measured, and not beyond it.",
+        Some(Level::MeasuredConfigurations) => "In configurations like those that were measured, and in no others.",
         Some(Level::Located) => "For the positions of targets and devices: the axes of the joints were held.",
         Some(Level::DoNotUse) => "Nowhere: this calibration is not to be used (see the report).",
         None => "Not judged: the calibration was written by an earlier version.",
@@ -194,8 +190,7 @@ fn ranges(file: &CalibrationFile) -> String {
 }
 
 fn method(file: &CalibrationFile) -> String {
-    let terms =
-        if delivered_name(file) == "corrected" { ", and what the joints do beyond geometry" } else { "" };
+    let terms = if delivered_name(file) == "corrected" { ", and what the joints do beyond geometry" } else { "" };
     let place = match file.frame() {
         DeviceFrameKnowledge::Unknown => "the device's place is fitted too",
         DeviceFrameKnowledge::Base => "the device measures in the robot's base",
@@ -230,16 +225,11 @@ mod tests {
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
         let record = Record::from_pairs([("serial", "<b>4711</b>"), ("valid_until", "2027-11-28")]).unwrap();
-        let attest =
-            CertificateExtras { sha256: Some("ab".repeat(32)), logo: Some(("image/png", vec![0x89, 0x50])) };
+        let attest = CertificateExtras { sha256: Some("ab".repeat(32)), logo: Some(("image/png", vec![0x89, 0x50])) };
         let page = certificate_page(&file, &record, &attest).concat();
-        for words in [
-            "&lt;b&gt;4711&lt;/b&gt;",
-            "2027-11-28",
-            "data:image/png,%89%50",
-            "<dt>Customer</dt><dd></dd>",
-            "k = 2",
-        ] {
+        for words in
+            ["&lt;b&gt;4711&lt;/b&gt;", "2027-11-28", "data:image/png,%89%50", "<dt>Customer</dt><dd></dd>", "k = 2"]
+        {
             assert!(page.contains(words), "{words}");
         }
         assert!(!page.contains("<script"));

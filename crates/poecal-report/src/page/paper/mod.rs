@@ -91,10 +91,7 @@ pub(crate) fn record_entries(
 }
 
 /// The first few files with their checksums.
-pub(crate) fn files<'a>(
-    names: impl Iterator<Item = &'a String>,
-    sha256: &BTreeMap<String, String>,
-) -> Markup {
+pub(crate) fn files<'a>(names: impl Iterator<Item = &'a String>, sha256: &BTreeMap<String, String>) -> Markup {
     let hashed: Vec<(&String, &String)> = names.filter_map(|name| Some((name, sha256.get(name)?))).collect();
     html! {
         @for (name, hash) in hashed.iter().take(LISTED) { p { (name.rsplit(['/', '\\']).next().unwrap_or(name)) " " code { (hash) } } }

@@ -60,8 +60,7 @@ pub(crate) fn first_page(test: &TestResult, found: &Iso9283, before: Option<&Iso
 }
 
 fn sheet(test: &TestResult, found: &Iso9283, before: Option<&Iso9283>, title: &Markup) -> Markup {
-    let names =
-        std::iter::once(&test.inputs.calibration).chain(&test.inputs.measurements).chain(&test.reference);
+    let names = std::iter::once(&test.inputs.calibration).chain(&test.inputs.measurements).chain(&test.reference);
     html! {
         style { (PreEscaped(paper::STYLE)) (PreEscaped(STYLE)) }
         section.attested.tested aria-label="Certificate" {
@@ -99,15 +98,12 @@ fn largest(test: &TestResult) -> Markup {
     let groups = groups(test);
     let has = |value: FigureValue| groups.iter().any(|group| group.largest(value).is_some());
     let further: Vec<_> = FURTHER.iter().filter(|it| has(it.3)).collect();
-    let heads =
-        ["", "largest", "95\u{a0}% interval", "pose"].into_iter().chain(further.iter().map(|it| it.1));
+    let heads = ["", "largest", "95\u{a0}% interval", "pose"].into_iter().chain(further.iter().map(|it| it.1));
     let mut table = HtmlTable::new("The largest figure of all poses", 1, &heads.collect::<Vec<_>>());
     for group in &groups {
         let mut cells = tested::largest_cells(group, tested::name(group), "", |it| Some(it.measured));
         cells.extend(further.iter().map(|(.., key, value)| {
-            let own = tested::largest_cells(group, Markup::default(), &format!(".{key}"), *value)
-                .into_iter()
-                .nth(1);
+            let own = tested::largest_cells(group, Markup::default(), &format!(".{key}"), *value).into_iter().nth(1);
             own.unwrap_or_else(|| html! { "–" })
         }));
         table.cells(cells);
@@ -117,10 +113,7 @@ fn largest(test: &TestResult) -> Markup {
 
 fn method(test: &TestResult) -> String {
     let noise = test.noise_mm.map_or_else(String::new, |it| {
-        format!(
-            " Noise of the instrument: {} in each coordinate, standard deviation.",
-            tested::with_unit(it, "mm")
-        )
+        format!(" Noise of the instrument: {} in each coordinate, standard deviation.", tested::with_unit(it, "mm"))
     });
     format!(
         "Pose characteristics after ISO 9283:1998 of {} cycles, {} rows. Frame: {}.{noise} Intervals (95 %) are those of the scatter of cycles; errors that all \

@@ -95,11 +95,9 @@ pub fn visit_page(told: &TrackReport, file: &CalibrationFile, time: Option<&str>
 
 /// The calibration beside the visit.
 fn then_and_now(told: &TrackReport, file: &CalibrationFile, day: Option<&str>) -> Markup {
-    let mut table =
-        HtmlTable::new("The robot when it was calibrated, and in this visit", 3, &["", "then", "now"]);
-    let text = |record: &Record, key: &str| {
-        record.entries().into_iter().find(|it| it.0 == key).map(|it| it.2.to_owned())
-    };
+    let mut table = HtmlTable::new("The robot when it was calibrated, and in this visit", 3, &["", "then", "now"]);
+    let text =
+        |record: &Record, key: &str| record.entries().into_iter().find(|it| it.0 == key).map(|it| it.2.to_owned());
     for (key, label) in SESSION {
         let today = day.filter(|_| key == "date").map(str::to_owned);
         let now = text(&told.record, key).or(today);
@@ -110,11 +108,7 @@ fn then_and_now(told: &TrackReport, file: &CalibrationFile, day: Option<&str>) -
     let then = then.and_then(|(_, model, _)| model.get(Quantity::Position));
     let then = then.map(|it| format!("{} mm (RMS), on {} {}", number(it.rms), set.count, judged_on(file)));
     let now = format!("{} mm (RMS), on {} rows", number(told.error_mm), told.rows);
-    table.cells([
-        format!("Error of the {} model", delivered_name(file)),
-        then.unwrap_or_else(|| "–".to_owned()),
-        now,
-    ]);
+    table.cells([format!("Error of the {} model", delivered_name(file)), then.unwrap_or_else(|| "–".to_owned()), now]);
     if let Some(found) = expected_summary(file) {
         let words = format!("{} mm (RMS), 95 % below {} mm", number(found.error_mm), number(found.bound_mm));
         table.cells(["Expected error".to_owned(), words, String::new()]);
@@ -131,8 +125,7 @@ fn then_and_now(told: &TrackReport, file: &CalibrationFile, day: Option<&str>) -
 
 /// Each joint with its measured ranges, and the shift of its zero.
 fn joints(told: &TrackReport, file: &CalibrationFile) -> Markup {
-    let heads =
-        ["joint", "measured then", "measured now", "smallest visible shift (95 %)", "shift of its zero"];
+    let heads = ["joint", "measured then", "measured now", "smallest visible shift (95 %)", "shift of its zero"];
     let mut table = HtmlTable::new("Measured ranges, and shifts of zeros since the calibration", 1, &heads);
     for joint in told.joints.iter().take(MOST_JOINTS) {
         let then = file.coverage.iter().find(|it| it.joint == joint.joint);

@@ -39,8 +39,7 @@ pub(crate) fn cube(found: &Iso9283, before: Option<&Iso9283>) -> Markup {
         let points = places.iter().map(flat).collect();
         let labels = found.clusters.iter().map(|it| it.pose.clone()).collect();
         let box_lines = outline(flat(&low), flat(&high));
-        let cube =
-            ArmSeries { name: "poses".to_owned(), style: 3, lines: box_lines, is_thin: true, points, labels };
+        let cube = ArmSeries { name: "poses".to_owned(), style: 3, lines: box_lines, is_thin: true, points, labels };
         let arrows = |(name, style, errors): (&str, usize, &Vec<PlacedError>)| {
             let own = errors.iter().flat_map(|(at, error)| arrow(flat(at), flat(&(at + factor * error))));
             ArmSeries { name: name.to_owned(), style, lines: own.collect(), ..ArmSeries::default() }

@@ -78,12 +78,7 @@ pub(crate) fn name(group: &FigureGroup<'_>) -> Markup {
 }
 
 /// Label, value, interval and pose of the largest of a value; none if no figure has it.
-pub(crate) fn largest_cells(
-    group: &FigureGroup<'_>,
-    label: Markup,
-    key: &str,
-    value: FigureValue,
-) -> Vec<Markup> {
+pub(crate) fn largest_cells(group: &FigureGroup<'_>, label: Markup, key: &str, value: FigureValue) -> Vec<Markup> {
     let Some((at, entry, value)) = group.largest(value) else { return Vec::new() };
     let (key, unit) = (format!("figures.{at}{key}"), behind(entry.unit));
     let found = html! { (figure(value.found, format_args!("{key}.found"))) (unit) };
@@ -98,9 +93,7 @@ pub(crate) fn by_pose(test: &TestResult) -> Markup {
     let mut table = HtmlTable::new("Accuracy and repeatability of position at each pose", 1, &heads);
     for (_, accuracy) in all().filter(|it| is_of(it.1, "AP")) {
         let mut cells = vec![html! { (accuracy.pose) }];
-        for (at, it) in
-            all().filter(|it| it.1.pose == accuracy.pose && (is_of(it.1, "AP") || is_of(it.1, "RP")))
-        {
+        for (at, it) in all().filter(|it| it.1.pose == accuracy.pose && (is_of(it.1, "AP") || is_of(it.1, "RP"))) {
             cells.push(figure(it.measured.found, format_args!("figures.{at}.found")));
             cells.push(interval(&it.measured, &format!("figures.{at}"), ""));
         }
@@ -130,11 +123,8 @@ fn conditions(test: &TestResult) -> Vec<(&'static str, Markup)> {
 
 /// Each limit with the largest figure.
 fn limits(test: &TestResult) -> Markup {
-    let mut table = HtmlTable::new(
-        "Figures and their limits",
-        1,
-        &["", "decision", "limit", "found", "95\u{a0}% interval"],
-    );
+    let mut table =
+        HtmlTable::new("Figures and their limits", 1, &["", "decision", "limit", "found", "95\u{a0}% interval"]);
     for (k, limit) in test.limits.iter().enumerate() {
         table.cells(limit_cells(limit, &format!("limits.{k}")));
     }
@@ -160,21 +150,15 @@ pub(crate) fn limit_cells(limit: &FigureLimitEntry, key: &str) -> [Markup; 5] {
 }
 
 fn doubts(test: &TestResult) -> Markup {
-    let all: Vec<Markup> = test
-        .warnings
-        .iter()
-        .enumerate()
-        .map(|(k, text)| quote_text(text, format_args!("warnings.{k}")))
-        .collect();
+    let all: Vec<Markup> =
+        test.warnings.iter().enumerate().map(|(k, text)| quote_text(text, format_args!("warnings.{k}"))).collect();
     html! { section.doubts aria-labelledby="doubts-title" { h2 #doubts-title { "Look at" } (list(&all)) } }
 }
 
 /// All figures of all poses.
 fn all(test: &TestResult) -> Markup {
-    let further: Vec<_> =
-        FURTHER.iter().filter(|of| test.figures.iter().any(|it| of.3(it).is_some())).collect();
-    let heads =
-        ["figure", "pose", "cycles", "found", "from", "to"].into_iter().chain(further.iter().map(|it| it.1));
+    let further: Vec<_> = FURTHER.iter().filter(|of| test.figures.iter().any(|it| of.3(it).is_some())).collect();
+    let heads = ["figure", "pose", "cycles", "found", "from", "to"].into_iter().chain(further.iter().map(|it| it.1));
     let mut table = HtmlTable::new("Figures with their 95\u{a0}% intervals", 2, &heads.collect::<Vec<_>>());
     for (at, it) in test.figures.iter().enumerate() {
         let unit = behind(it.unit);
@@ -193,8 +177,7 @@ fn all(test: &TestResult) -> Markup {
 
 fn inputs(test: &TestResult) -> Markup {
     let inputs = &test.inputs;
-    let own =
-        (!inputs.calibration.is_empty()).then_some((&inputs.calibration, "inputs.calibration", "robot"));
+    let own = (!inputs.calibration.is_empty()).then_some((&inputs.calibration, "inputs.calibration", "robot"));
     let content = html! {
         (method::files(own, &[inputs.measurements.as_slice(), &test.reference].concat(), &inputs.sha256, (&inputs.files, &[])))
         (joins::sections(&inputs.joins))
@@ -207,20 +190,12 @@ fn inputs(test: &TestResult) -> Markup {
 
 fn signature(test: &TestResult) -> Markup {
     let inputs = &test.inputs;
-    let names: Vec<&String> = std::iter::once(&inputs.calibration)
-        .filter(|it| !it.is_empty())
-        .chain(&inputs.measurements)
-        .collect();
+    let names: Vec<&String> =
+        std::iter::once(&inputs.calibration).filter(|it| !it.is_empty()).chain(&inputs.measurements).collect();
     let robot = test.record.robot.as_deref().unwrap_or("–");
     let of = html! { (robot) @if let Some(serial) = &test.record.serial { ", serial number " (serial) } };
     let title = test.decision.map(|it| certificate::decision_title(it, test.limits.len()));
-    certificate::hands(
-        ("Robot", of),
-        &test.record,
-        title,
-        (&names, &inputs.sha256),
-        ("Tested by", test.poecal_version),
-    )
+    certificate::hands(("Robot", of), &test.record, title, (&names, &inputs.sha256), ("Tested by", test.poecal_version))
 }
 
 /// A length or angle with its unit.
