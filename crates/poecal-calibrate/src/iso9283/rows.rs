@@ -41,7 +41,7 @@ pub struct TestRow {
     pub rotation: Option<Matrix3<f64>>,
     /// Standard deviations of the instrument's noise, each component, if stated: metres, radians.
     pub noise: [Option<f64>; 2],
-    /// Action that was taken.
+    /// Labels of the row.
     pub labels: TestLabels,
     /// File and line, for messages.
     pub place: String,

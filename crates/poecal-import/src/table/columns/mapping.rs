@@ -157,11 +157,7 @@ impl ColumnMap {
 
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         if text.trim_start().starts_with('{') {
-            return Ok(ColumnMap {
-                motors: Some(Motors::parse(text, path)?),
-                path: path.to_path_buf(),
-                ..ColumnMap::default()
-            });
+            return Motors::parse(text, path).map(|motors| motors.into_mapping(path));
         }
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
             let mut message = error.message().replace('\n', "; ");
