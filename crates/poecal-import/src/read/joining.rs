@@ -71,7 +71,10 @@ impl<'a> MeasurementReader<'a> {
         if error.kind() != ErrorKind::Unit || self.map.units.angle.is_some() {
             return found;
         }
-        let Ok(in_degrees) = self.map.clone().with_units("deg") else { return found };
+        let mut in_degrees = self.map.clone();
+        if in_degrees.state_units("deg").is_err() {
+            return found;
+        }
         let Ok(rows) = self.joint_rows_by(planned, &in_degrees) else { return found };
         self.found.is_in_degrees = true;
         self.found.warnings.push(took_degrees(planned.path, "as radians they are too large"));

@@ -157,7 +157,8 @@ impl ColumnMap {
 
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         if text.trim_start().starts_with('{') {
-            return Motors::parse(text, path).map(|motors| motors.into_mapping(path));
+            let motors = Some(Motors::parse(text, path)?);
+            return Ok(ColumnMap { motors, path: path.to_path_buf(), ..ColumnMap::default() });
         }
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
             let mut message = error.message().replace('\n', "; ");
@@ -204,12 +205,6 @@ impl ColumnMap {
         self.units.length = self.units.length.or(found.length);
         self.units.angle = self.units.angle.or(found.angle);
         Ok(())
-    }
-
-    /// The mapping with units of columns that state none.
-    pub(crate) fn with_units(mut self, words: &str) -> Result<Self> {
-        self.state_units(words)?;
-        Ok(self)
     }
 
     /// True if it names columns of joints or of measurements.

@@ -7,7 +7,6 @@ use serde::Deserialize;
 
 use super::super::header::Header;
 use super::column_spec::ColumnSpec;
-use super::mapping::ColumnMap;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 use poecal_numerics::named_unit::NamedUnit;
@@ -61,11 +60,6 @@ impl Motors {
             }
         }
         Ok(motors)
-    }
-
-    /// The motors in place of a mapping.
-    pub(crate) fn into_mapping(self, path: &Path) -> ColumnMap {
-        ColumnMap { motors: Some(self), path: path.to_path_buf(), ..ColumnMap::default() }
     }
 
     /// Range of the motor of a joint, in ticks.
