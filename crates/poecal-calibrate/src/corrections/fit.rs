@@ -67,7 +67,7 @@ struct SizeChoice {
 }
 
 impl CorrectionContext<'_> {
-    /// Chooses sizes, unless they are stated.
+    /// Chooses the prior sizes of the terms, unless they are stated.
     fn choose_sizes(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> SizeChoice {
         let (mut noise, source) = (self.geometry.noise(), self.geometry.robust.fitted.noise_source);
         let Some(RowSample { mut linear, parts, configurations }) = self.sample_rows(model, sizes) else {

@@ -90,14 +90,15 @@ impl Optics {
     /// Rows of pictures among some, as functions of the robot's unknowns and of these numbers.
     fn coupling(&self, data: &Dataset, problem: &Problem<'_>, estimate: &Estimate) -> Coupling {
         let pictures = &data.pictures;
-        let rows: Vec<u32> = problem.rows().iter().copied().filter(|row| pictures.of_row(*row).is_some()).collect();
+        let rows: Vec<u32> =
+            problem.rows().iter().copied().filter(|row| pictures.index_of_row(*row).is_some()).collect();
         let (starts, jacobian, residuals) = whitened_rows(problem, estimate, &rows);
         let errors = problem.session().errors(&rows, estimate);
         let count = self.unknowns.count();
         let mut own = PictureInformation::zero(count);
         let mut by_numbers = DMatrix::zeros(residuals.len(), count);
         for (at, (row, error)) in rows.iter().zip(&errors).enumerate() {
-            let Some(picture) = pictures.of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
+            let Some(picture) = pictures.index_of_row(*row).and_then(|at| pictures.all.get(at)) else { continue };
             let Some(view) = pictures.view(picture) else { continue };
             let Some(whitening) = data.whitening_of_picture(*row) else { continue };
             let measured = data.observations[*row as usize].measurement.pose();

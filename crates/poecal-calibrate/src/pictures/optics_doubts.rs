@@ -60,7 +60,7 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     let is_other = matches!(unknown, PictureUnknown::Lens(_)) && before_px > OTHER_LENS * after_px;
     let against_good = is_other.then(|| {
         format!(
-            "the corners of single pictures contradict the stated lens: they are {before_px:.2} px off the best pose of their picture, and {after_px:.2}              px with another lens"
+            "the corners of single pictures contradict the stated lens: their RMS reprojection error is {before_px:.2} px by the best pose of their picture, and {after_px:.2} px with another lens"
         )
     });
     Some(OpticsDoubt { statement, against_good })
@@ -93,7 +93,9 @@ fn words(
     [before_px, after_px]: [f64; 2],
 ) -> Option<String> {
     let numbers = optics.numbers_after(best);
-    let both = format!("{before_px:.2} px off the best pose of their picture, {after_px:.2} px");
+    let both = format!(
+        "reprojected with an RMS error of {before_px:.2} px by the best pose of their picture, of {after_px:.2} px"
+    );
     match unknown {
         PictureUnknown::Lens(camera) => {
             let name = shorten_name(&pictures.cameras.get(camera)?.name);

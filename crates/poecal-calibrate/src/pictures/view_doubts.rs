@@ -39,7 +39,7 @@ impl<'a> CameraFit<'a> {
         let pictures = &data.pictures;
         let mut views = CameraViews { poses: vec![Vec::new(); pictures.boards.len()], ..CameraViews::default() };
         let rows = fit.run.fit_rows.iter().copied().filter(|row| !fit.robust.robustness.suspects_row(*row));
-        let rows: Vec<u32> = rows.filter(|row| pictures.of_row(*row).is_some()).collect();
+        let rows: Vec<u32> = rows.filter(|row| pictures.index_of_row(*row).is_some()).collect();
         // Poses as the robot predicts them: a single picture hardly determines the tilt of a board seen from the front.
         let errors = fit.session().errors(&rows, &fit.robust.fitted.estimate);
         for (row, error) in rows.iter().zip(&errors) {

@@ -18,7 +18,7 @@ pub(crate) struct QuantityResidual {
 /// All quantities of a row.
 pub(crate) type RowResiduals = ByQuantity<QuantityResidual>;
 
-/// Whitened parts of some rows.
+/// Whitened squared residuals of some rows, by quantity.
 pub(crate) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, noise: Noise) -> Vec<RowResiduals> {
     session.map_squares(rows, estimate, |observation, squares| {
         let whitened = session.whiten_squares(observation, squares.map(|(squares, _)| squares), noise);

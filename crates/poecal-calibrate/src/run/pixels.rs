@@ -95,7 +95,7 @@ pub fn corner_error(data: &Dataset, row: u32, error: &RowError) -> Option<Corner
 /// Picture of a row with the pose of its board in the camera's frame as the model predicts it, by the error of the row; `None` if the row is not a
 /// picture.
 pub(crate) fn predicted_picture<'a>(data: &'a Dataset, row: u32, error: &RowError) -> Option<(&'a Picture, Pose)> {
-    let picture = data.pictures.all.get(data.pictures.of_row(row)?)?;
+    let picture = data.pictures.all.get(data.pictures.index_of_row(row)?)?;
     let measured = data.observations.get(row as usize)?.measurement.pose();
     Some((picture, picture.directed_measurement(&predicted_pose(&measured, error))))
 }

@@ -214,7 +214,7 @@ impl PredictedUncertainty<'_> {
 /// Covariance of the part of a picture's pose that corners leave undetermined, without the error of its configuration, which belongs to the robot;
 /// `None` for other rows.
 fn of_picture(data: &Dataset, row: u32, (quantity, robot): (Quantity, f64)) -> Option<Matrix3<f64>> {
-    data.pictures.of_row(row)?;
+    data.pictures.index_of_row(row)?;
     let first = [Quantity::Position, Quantity::Rotation].iter().position(|it| *it == quantity)? * 3;
     let whitening = data.whitening_of_picture(row)?;
     // Metres per radian that balance positions and rotations.

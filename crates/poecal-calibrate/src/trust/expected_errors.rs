@@ -116,7 +116,7 @@ impl Domain<'_> {
         // Errors of pictures in metres are noise of their corners in a direction that these hardly determine; the robot's errors are estimated
         // separately.
         let pictures = &self.session.data.pictures;
-        let is_seen = self.rows.iter().all(|row| pictures.of_row(*row).is_some());
+        let is_seen = self.rows.iter().all(|row| pictures.index_of_row(*row).is_some());
         match found.measured.zip(left_out_m).filter(|_| !is_seen) {
             Some((measured, left_out_m)) if raise(uncertainty, measured, left_out_m) => self.expectations(uncertainty),
             _ => found,

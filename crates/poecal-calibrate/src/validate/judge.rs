@@ -45,7 +45,7 @@ pub struct JudgedCalibration<'a> {
     pub uncertainty: Option<PredictedUncertainty<'a>>,
 }
 
-/// A part that was refitted to the judging measurements.
+/// A part that was refitted to the validation measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RefittedPart {

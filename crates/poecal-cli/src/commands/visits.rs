@@ -119,7 +119,7 @@ impl EarlierRows {
         let read = measurements::read(&paths, robot, meaning);
         if let Err(error) = &read {
             console.remark(format!(
-                "the measurements of the calibration ({names}) cannot be read as those of the visit ({error}): judged by the model"
+                "the measurements of the calibration ({names}) cannot be read with the options of this visit ({error}): rows are judged by the model"
             ));
         }
         Ok(EarlierRows { read: read.ok(), is_own: true })

@@ -142,7 +142,7 @@ fn what_does_not_go_together_is_refused() {
     refused(
         "both.csv --device-frames per-file",
         &format!(
-            "both.csv:1:{columns}: found a column that names the instrument beside --device-frames per-file, expected one of the two: leave the \
+            "both.csv:1:{columns}: found a column of instruments and --device-frames per-file, expected one of the two: leave the \
              option out, or the column"
         ),
     );

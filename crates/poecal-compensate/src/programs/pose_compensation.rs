@@ -19,7 +19,7 @@ pub struct PoseCompensation {
     branches: Option<AllBranches>,
 }
 
-/// Least lead (rad) of the configuration nearest to another over the second nearest, and least distance from half a turn, for a certain choice.
+/// Margin (rad) of an unambiguous nearest configuration: over the second nearest, and below a change of half a turn.
 const SURE: f64 = 0.05;
 /// Change of a joint (rad, m) in a step along a path.
 const LARGEST_STEP: f64 = 0.35;

@@ -20,7 +20,7 @@ const STILL_RAD: f64 = 2.6e-3;
 const STILL_M: f64 = 1e-4;
 /// Joints moved together if a combination of their values, each scaled by its spread, varies by less than this share of one spread.
 const TOGETHER: f64 = 0.01;
-/// Sine of the angle (about 3°) within which axes are parallel: nominally so, but for manufacturing errors.
+/// Sine of the largest angle (about 3°) between axes that count as parallel: it allows for manufacturing errors.
 const PARALLEL: f64 = 0.05;
 /// Variance about a direction (that of about 1°) below which orientations count as one.
 const ONE_ORIENTATION: f64 = 3e-4;
@@ -62,7 +62,7 @@ pub(crate) struct Excitation {
     pub(crate) numbers: usize,
     /// Number of distinct configurations, likewise.
     pub(crate) configurations: usize,
-    /// For each target, the number of distinct configurations it was seen in, likewise.
+    /// For each target, number of distinct configurations with a measurement of it, counted in the same way.
     seen: Vec<usize>,
 }
 

@@ -119,7 +119,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     all
 }
 
-/// Hypothesis of distances that count from another zero, which a calibration may absorb.
+/// Hypothesis that distances have an unknown zero offset, which a calibration may absorb.
 fn of_zeros(sample: &Dataset) -> Option<MistakeHypothesis> {
     let is_counted = |row: &Observation| {
         row.measurement.has_length_of(Quantity::Distance) && !row.measurement.function().zero_is_unknown

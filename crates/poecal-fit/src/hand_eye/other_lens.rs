@@ -33,7 +33,7 @@ pub(crate) fn other_lens(pictures: &Pictures) -> Option<String> {
     let size = pictures.all.first().and_then(|it| pictures.cameras.get(it.camera)?.lens.size_px);
     let size = size.map_or("WIDTHxHEIGHT".to_owned(), |[width, height]| format!("{width}x{height}"));
     Some(format!(
-        "the corners are {before:.2} px off the best pose of their picture, {after:.2} px with another lens ({}): state the lens of these pictures, or \
+        "the corners are reprojected with an RMS error of {before:.2} px by the best pose of their picture, of {after:.2} px with another lens ({}): state the lens of these pictures, or \
          find it with --lens unknown:{size}",
         changed_numbers(&numbers, FAR)
     ))

@@ -14,7 +14,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 pub struct PoseList {
     /// Poses as they were read.
     pub poses: Vec<Pose>,
-    /// Other readings of the same numbers, to be named if they fit and this one does not.
+    /// Other interpretations of the same numbers, reported if one of them fits and this one does not.
     pub others: Vec<ListReading>,
     /// For each row, other poses that fit the picture nearly as well, such as the second one of a flat board; empty if there are none at
     /// all.
@@ -37,7 +37,7 @@ pub struct ListReading {
 impl PoseList {
     /// The list of some rows, in this order, with the same lens.
     #[must_use]
-    pub fn of_rows(&self, rows: &[usize]) -> Self {
+    pub fn select_rows(&self, rows: &[usize]) -> Self {
         let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
         let others = self.others.iter().map(|it| ListReading { advice: it.advice.clone(), poses: of(&it.poses) });
         let other_poses = match self.other_poses.is_empty() {

@@ -141,7 +141,7 @@ fn leave_moved_out(
     let (longer, left_out) = if before.len() >= after.len() { (before, after) } else { (after, before) };
     let statement = format!(
         "{} moved by {:.2} mm and {:.2} deg before {}: the {} poses {} it were left out; fix it, and measure again",
-        session_motion::words(step.side, camera),
+        session_motion::moved_object(step.side, camera),
         1e3 * step.shift_m,
         step.turn_rad.to_degrees(),
         name(row),

@@ -66,7 +66,7 @@ fn score_rows(pairs: &[PosePair]) -> Option<f64> {
 }
 
 /// The moved object, in words.
-pub(crate) fn words(side: FrameSide, camera: CameraMounting) -> &'static str {
+pub(crate) fn moved_object(side: FrameSide, camera: CameraMounting) -> &'static str {
     match (side, camera) {
         (FrameSide::Camera, CameraMounting::InHand) => "the camera on the flange",
         (FrameSide::Target, CameraMounting::InHand) => "the target",

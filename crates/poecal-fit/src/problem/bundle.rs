@@ -48,7 +48,7 @@ impl<'a> Bundle<'a> {
         let pictures = &session.data.pictures;
         let is_brown = |it: &Camera| matches!(it.lens.distortion, Distortion::Brown(_));
         pictures.cameras.iter().all(is_brown).then(|| Bundle {
-            pictures: rows.iter().filter_map(|row| pictures.of_row(*row)).collect(),
+            pictures: rows.iter().filter_map(|row| pictures.index_of_row(*row)).collect(),
             layout: Layout::new(free, session.length_m),
             by_points: (0..pictures.boards.len()).map(|board| numbers.by_points(board)).collect(),
             of_lenses: (0..pictures.cameras.len()).map(|it| numbers.of_lens(it).collect()).collect(),

@@ -43,12 +43,12 @@ impl KernelColumns {
         if self.shift_places.iter().all(|place| place.is_unknown()) {
             return Vec::new();
         }
-        let places: Vec<StepColumn> = self.places().take(self.plan.columns()).collect();
+        let places: Vec<StepColumn> = self.step_columns().take(self.plan.columns()).collect();
         places.chunks(TILE).map(|tile| !tile.iter().any(|place| place.is_unknown())).collect()
     }
 
-    /// Places of the plan's columns in a step: translation columns, rotation columns, supplied ones.
-    pub(crate) fn places(&self) -> impl Iterator<Item = StepColumn> {
+    /// Columns of the step, in the plan's order: translations, rotations, supplied ones.
+    pub(crate) fn step_columns(&self) -> impl Iterator<Item = StepColumn> {
         self.shift_places.iter().chain(&self.turn_places).chain(&self.given_places).copied()
     }
 

@@ -155,7 +155,7 @@ impl KernelGroup {
 
     /// Adds cost and gradient of the group to the problem's normal information.
     fn put(&self, totals: &PassTotals, normal: &mut NormalEquations) {
-        let places = self.arranged.places();
+        let places = self.arranged.step_columns();
         for (value, place) in totals.gradient.iter().zip(places).filter(|(_, place)| place.is_unknown()) {
             normal.gradient[place.at] += place.sign * value;
         }

@@ -55,7 +55,7 @@ impl Problem<'_> {
         let linkage = Linkage::new(state);
         let (steps, end) = fixed_motions(&linkage, arranged.sight);
         let plan = &arranged.plan;
-        let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
+        let columns: Vec<(usize, f64)> = arranged.step_columns().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
         let shapes = RowShapes { problem: self, linkage: &linkage, second: None, arranged, rows: &own };
         let arm = ArmAtEstimate { plan, steps: &steps, end: &end, shape: shapes.as_shape(), nearly: false };

@@ -48,7 +48,7 @@ impl PlainScatter {
     fn new(arranged: &KernelColumns, n: usize) -> Option<Self> {
         let plan = &arranged.plan;
         let mut is_known = vec![false; n];
-        for place in arranged.places() {
+        for place in arranged.step_columns() {
             let known = is_known.get_mut(place.at)?;
             if place.sign != 1.0 || std::mem::replace(known, true) {
                 return None;
@@ -66,7 +66,7 @@ impl PlainScatter {
         };
         let of_place = |place: StepColumn| (place.at * n, place.at);
         Some(PlainScatter {
-            at: arranged.places().take(columns).map(of_place).collect(),
+            at: arranged.step_columns().take(columns).map(of_place).collect(),
             turns_at: arranged.turn_places().iter().take(turns.len()).copied().map(of_place).collect(),
             turns: TileIndex::new(turns.len()),
             of_shifts,
@@ -150,7 +150,7 @@ impl ListedScatter {
             twice * a.1.sign * b.1.sign
         };
         let columns = plan.columns();
-        let places: Vec<StepColumn> = arranged.places().take(columns).collect();
+        let places: Vec<StepColumn> = arranged.step_columns().take(columns).collect();
         let tiles = TileIndex::new(columns);
         let mut made = ListedScatter {
             position: Vec::with_capacity(columns * (columns + 1) / 2),

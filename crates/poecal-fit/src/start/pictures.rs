@@ -115,7 +115,7 @@ pub(super) fn in_hand(data: &Dataset) -> Dataset {
     let rows: Vec<(usize, usize, usize)> =
         data.pictures.all.iter().map(|it| (it.row as usize, it.camera, it.board)).collect();
     // Names of objects in no picture stay.
-    let is_of_pictures = |row: usize| data.pictures.of_row(row as u32).is_some();
+    let is_of_pictures = |row: usize| data.pictures.index_of_row(row as u32).is_some();
     let others = (0..data.len()).filter(|row| !is_of_pictures(*row));
     let others: Vec<(usize, usize, usize)> =
         others.map(|row| (row, data.observations[row].target, data.observations[row].station)).collect();

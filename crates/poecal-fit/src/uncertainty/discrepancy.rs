@@ -94,7 +94,7 @@ pub fn discrepancy(
 /// Standard deviation of the shared error of a picture's corners, if all rows are pictures: an error of the configuration, and no noise.
 fn of_pictures(view: &FitView<'_>, quantity: Quantity) -> Option<f64> {
     let pictures = &view.session.data.pictures;
-    let is_picture = |row: &u32| pictures.of_row(*row).is_some();
+    let is_picture = |row: &u32| pictures.index_of_row(*row).is_some();
     if pictures.is_empty() || !view.rows.iter().all(is_picture) {
         return None;
     }

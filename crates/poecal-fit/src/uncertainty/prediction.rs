@@ -12,7 +12,7 @@ pub struct PredictedError {
     pub position: Matrix3<f64>,
     /// Covariance of the rotation vector, square radians.
     pub rotation: Matrix3<f64>,
-    /// For each quantity, factors by which the bounds exceed those of known covariances.
+    /// For each quantity, growth of its 95 % bounds, since its variance is estimated.
     pub quantiles: ByQuantity<Quantile>,
 }
 

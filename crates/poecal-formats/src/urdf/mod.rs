@@ -123,7 +123,7 @@ impl UrdfDocument {
         ChainSelection::from_links(&self.robot, &links)
     }
 
-    /// Joints beyond the tip link, which the robot does not have, each with an end link that it moves.
+    /// Joints beyond the tip link, which are not part of the robot, each with an end link that it moves.
     #[must_use]
     pub fn joints_beyond_tip(&self) -> &[(String, String)] {
         &self.beyond

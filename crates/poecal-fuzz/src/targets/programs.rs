@@ -8,7 +8,7 @@ use poecal_model::simulate::elbow;
 use crate::LONGEST;
 use crate::properties::{check_result, one_line};
 
-/// True for characters of numbers: all others of a program stay.
+/// True for a character of a number: all other characters of a program must stay unchanged.
 fn is_of_number(byte: u8) -> bool {
     byte.is_ascii_digit() || b".+-eE".contains(&byte)
 }

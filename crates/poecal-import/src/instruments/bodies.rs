@@ -237,7 +237,7 @@ impl<'t> RecordedFrames<'t> {
                 {
                     let (word, body) = (shorten_name(word), shorten_name(body));
                     return FileLine(frame.line).refuse(format!(
-                        "found `{word}` in a column of `{body}`, expected a number: leave the cell empty where it was not seen"
+                        "found `{word}` in a column of `{body}`, expected a number: leave the cell empty where the body was not seen"
                     ));
                 }
             }

@@ -24,7 +24,7 @@ pub struct InputEntry {
     /// Interpretation of a file in another form, in a few words: sheet, frame, body, topic, unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub understood: Option<String>,
-    /// Number of its rows, with those of beam breaks.
+    /// Number of rows of the file, including beam breaks.
     pub rows: usize,
     /// Number of items that were taken, by quantity: `joint readings`, `points`, `poses` and other measurements.
     pub taken: BTreeMap<String, usize>,

@@ -25,8 +25,8 @@ pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
     if has_keys {
         let has = |key: &str| head.lines().any(|line| line.trim_start().trim_start_matches("- ").starts_with(key));
         let message = if has("target_finder:") || has("image:") && has("pose:") {
-            "found pictures with poses (cal_data.yaml of industrial_calibration), expected the joint readings of each picture, which it does not have: \
-             write a CSV with `image` and the joints, and the corners by `poecal detect`; the file itself is for --camera, --markers and \
+            "found pictures with poses (cal_data.yaml of industrial_calibration), expected the joint readings of each picture, which this file does not have: \
+             write a CSV with `image` and the joint readings, and detect the corners by `poecal detect`; pass this file to --camera, --markers or \
              detect --board"
                 .to_owned()
         } else {

@@ -10,7 +10,7 @@ use poecal_numerics::error::Result;
 /// Keys of mrcal that are read, or do not describe a lens.
 pub(super) const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt_fromref extrinsics valid_intrinsics_region optimization_inputs \
                         icam_intrinsics";
-/// Models of mrcal that are OpenCV's, in its order of coefficients, each with their number.
+/// Lens models of mrcal that equal OpenCV's, each with its number of distortion coefficients (in OpenCV's order).
 const MRCAL_MODELS: [(&str, usize); 4] = [("PINHOLE", 0), ("OPENCV4", 4), ("OPENCV5", 5), ("OPENCV8", 8)];
 
 /// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.

@@ -50,6 +50,7 @@ impl MeasurementReader<'_> {
         self.warn(path, (column != "image").then(|| format!("took `{column}` for image")));
         self.warn_of_ignored(path, &inputs.layout);
         self.warn(path, inputs.layout.joint_words());
+        self.taken_by.clone_from(&inputs.layout.controller);
         self.found.warnings.extend(inputs.joint_warnings(&table.header)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
@@ -63,7 +64,10 @@ impl MeasurementReader<'_> {
         let Some(columns) = columns else { return Ok(()) };
         self.refuse_without_cameras(&table.header, &columns)?;
         let has_joints = self.taken.is_empty() || joints.iter().all(|name| table.header.count(name) > 0);
-        let layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
+        let mut layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
+        if !has_joints {
+            layout.controller.clone_from(&self.taken_by);
+        }
         let mut numbers = NumberReader::new(self.map.decimal);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         let is_named = columns.names_pictures(&table.header);

@@ -111,7 +111,7 @@ fn pair_poses(arm: &PoseFile, flange: PoseFileList, rows: &[usize], target: (Pos
     let width = arm.joints.len() / arm.lines.len().max(1);
     let joints = |row: &usize| arm.joints.get(row * width..(row + 1) * width).unwrap_or_default();
     PosePairs {
-        flange: flange.poses.of_rows(rows),
+        flange: flange.poses.select_rows(rows),
         target: target.0,
         joints: rows.iter().flat_map(joints).copied().collect(),
         names: rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
@@ -149,7 +149,7 @@ fn join_files(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let [mut arm, mut seen] = if is_turned { [second, first] } else { [first, second] };
     let [arm_rows, seen_rows] = if is_turned { [right, left] } else { [left, right] };
     let (flange, target) = (arm.take(PoseOwner::Arm)?, seen.take(PoseOwner::Target)?);
-    let pairs = pair_poses(&arm, flange, &arm_rows, (target.poses.of_rows(&seen_rows), target.words));
+    let pairs = pair_poses(&arm, flange, &arm_rows, (target.poses.select_rows(&seen_rows), target.words));
     Ok(PosePairs { warnings, sha256, ..pairs })
 }
 

@@ -31,11 +31,10 @@ use poecal_fit::input_doubts::boards::refuse_wrong_boards;
 use poecal_fit::start::{settle_faces, settle_pictures};
 use poecal_model::camera::{Board, Camera};
 use poecal_model::measurement::Dataset;
-use poecal_model::robot::Robot;
+use poecal_model::robot::{Controller, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::{NamedLines, escape_invisible};
 use poecal_storage::document;
-use zeros::settle_zeros;
 
 /// Reads measurement files, joined in their order.
 ///
@@ -107,6 +106,8 @@ pub(crate) struct MeasurementReader<'a> {
     pub(crate) taken: ConfigurationsByImage,
     /// Name of these readings in messages.
     pub(crate) taken_as: &'static str,
+    /// Conversion of their columns into readings.
+    pub(crate) taken_by: Option<Controller>,
     /// The joint readings of each line, if another file has them.
     pub(crate) readings: Option<ReadingsByLine>,
     /// The time of each row so far, seconds, if it is asked for.
@@ -136,6 +137,7 @@ impl<'a> MeasurementReader<'a> {
             begun: BTreeMap::new(),
             taken: ConfigurationsByImage::new(),
             taken_as: "joint readings",
+            taken_by: None,
             readings: None,
             times: None,
             cameras: options.cameras.clone(),
@@ -188,7 +190,7 @@ impl<'a> MeasurementReader<'a> {
             layout.controller.clone_from(&by_line.controller);
         }
         if let Some(column) = layout.instrument.filter(|_| self.options.frames == FrameGrouping::PerFile) {
-            let message = "found a column that names the instrument beside --device-frames per-file, expected one of the two: leave the option \
+            let message = "found a column of instruments and --device-frames per-file, expected one of the two: leave the option \
                            out, or the column";
             return Err(table.header.error(ErrorKind::Measurement, column, message));
         }
@@ -286,7 +288,7 @@ impl<'a> MeasurementReader<'a> {
         found.data.settle_pixels();
         refuse_wrong_boards(&found.data)?;
         if let Some(motors) = self.map.motors.as_ref().filter(|_| self.options.controller.is_none()) {
-            settle_zeros(&mut found, self.robot, motors)?;
+            zeros::settle_zeros(&mut found, self.robot, motors)?;
         }
         let settled = settle_pictures(&mut found.data, self.robot);
         found.notes.extend(settled.notes);

@@ -7,7 +7,7 @@ use poecal_model::measurement::{
     FUNCTIONS, FormCriterion, FunctionRow as TableRow, MeasurementColumns, MeasurementFunction, Quantity,
 };
 
-/// A kind of measurement: a function in a form of its own in files.
+/// A kind of measurement: a measured function and its columns in a file.
 #[derive(Clone, Copy)]
 pub(crate) struct FunctionKind {
     pub(crate) function: &'static MeasurementFunction,

@@ -55,14 +55,14 @@ impl Pictures {
 
     /// Index of the picture of a row.
     #[must_use]
-    pub fn of_row(&self, row: u32) -> Option<usize> {
+    pub fn index_of_row(&self, row: u32) -> Option<usize> {
         self.all.binary_search_by_key(&row, |picture| picture.row).ok()
     }
 
     /// Pictures of some rows, which have new numbers in this order.
     pub(crate) fn select_rows(&self, rows: &[u32]) -> Self {
         let of = |(new, &row): (u32, &u32)| {
-            let picture = self.all.get(self.of_row(row)?)?;
+            let picture = self.all.get(self.index_of_row(row)?)?;
             Some(Picture { row: new, ..picture.clone() })
         };
         Pictures { all: (0..).zip(rows).filter_map(of).collect(), ..self.clone() }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::{Channels, Quantity};
 use poecal_arm::lie::{Freedom, Pose};
 
-/// Numbers of a measurement that a function needs, metres and radians; zero if it needs fewer. A pose needs all: its position, then the
+/// Values of a measurement, metres and radians; those that its function does not need are zero. A pose needs all: its position, then the
 /// columns of its rotation.
 pub type MeasuredValues = [f64; 12];
 

@@ -74,7 +74,7 @@ pub enum Quantity {
         "contact",
         Metre,
         ["contact_x", "contact_y", "contact_z"],
-        "of contacts along three axes square to each other, from the ball to the middle of its socket"
+        "of contacts along three orthogonal axes, from the ball to the centre of its socket"
     ),
     /// Height of a target over a plane.
     Height = ("height", Metre, ["height"], "of heights, above zero where more was measured than predicted"),

@@ -8,7 +8,7 @@ use poecal_numerics::error::nearest_word;
 /// Terms that a calibration fits beside the screws, and their sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Corrections {
-    /// Those that predict held-out rows best; none if geometry alone does as well.
+    /// Terms that predict held-out rows best; none if geometry alone predicts them as well.
     #[default]
     Auto,
     /// The same choice with bearings and links compliant in all directions ([`CompliantDirections::All`]).

@@ -4,7 +4,7 @@
 use super::{LeastSquares, NormalEquations};
 use crate::linalg;
 
-/// Largest increase of the cost that may be rounding, as a share of it.
+/// Largest relative increase of the cost that may be rounding.
 const SAME_COST: f64 = 1e-9;
 
 /// Largest ratio of a step's predicted reduction to that of the step before: larger ones are rounding of the gradient.

@@ -174,7 +174,7 @@ impl PlannedExperiment {
         Ok(bias.max(0.0).sqrt())
     }
 
-    /// Combines terms: directions about which a session of this number of configurations is informative.
+    /// Combines terms into the directions that a session of this number of configurations determines.
     fn settle_modes(&mut self, sample: &[f64], count: usize) -> Result<()> {
         if self.terms.is_empty() {
             return Ok(());

@@ -164,7 +164,7 @@ impl RapidBuilder<'_> {
             known.push((tool, frame));
         }
         if let Some(line) = moves.iter().find_map(|it| it.displaced) {
-            return Err(format!("a program displacement may be active: switched on on line {line}"));
+            return Err(format!("a program displacement may be active: line {line} switches it on"));
         }
         let external = external_axes(external, self.axes)?;
         if configuration.iter().any(|it| it.value.fract() != 0.0 || it.value.abs() > 100.0) {

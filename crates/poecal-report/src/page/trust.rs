@@ -55,7 +55,7 @@ fn expected_table(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) ->
                     @if matches!(file.noise.source, NoiseSource::Given | NoiseSource::Rows) {
                         "The stated noise explains a small part of the residuals only; the rest counts as robot error."
                     } @else {
-                        "No stated noise explains the residuals and no repeated measurement shows it, so all of them count as robot error. State \
+                        "Neither a stated noise nor repeated measurements explain the residuals, so all of them count as robot error. State \
                          the noise (--sigma-position) or repeat measurements to separate the two."
                     }
                 }

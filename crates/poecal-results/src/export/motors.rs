@@ -43,10 +43,7 @@ type Motors = BTreeMap<String, Motor>;
 /// geometry is left to the calibrated URDF; of others, the offsets that come nearest to the calibrated robot.
 pub(crate) fn write_motors(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<ExportedText> {
     if let Some(joint) = robot.joints.iter().find(|it| it.kind == JointKind::Prismatic) {
-        return Err(export_error(format!(
-            "found joint `{}`, which slides, expected joints that motors turn",
-            joint.name
-        )));
+        return Err(export_error(format!("found prismatic joint `{}`, expected revolute joints only", joint.name)));
     }
     let file = motors_of(robot, motors)?;
     let mut written = match model.sums() {

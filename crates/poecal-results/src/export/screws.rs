@@ -121,8 +121,8 @@ pub(crate) fn describe_extra_terms(model: &Model) -> Result<Option<String>> {
     };
     let file = ExtraTerms {
         robot: &plain.name,
-        formula: "value of a joint = its reading + sum of coefficient * f, each f as stated, of the values of all joints without terms; a give \
-                  named JOINT~x or JOINT~y turns the link of JOINT about the axis (v, w) in the base at zero",
+        formula: "value of a joint = its reading + sum of coefficient * f, f as stated, of the values of all joints without terms; a compliant joint \
+                  JOINT~x or JOINT~y (in `gives`) turns the link of JOINT about the screw (v, w), base frame, all joints at zero",
         units: "m, rad",
         gives: plain.joints.iter().filter(|joint| joint.give_of.is_some()).map(of_joint).collect(),
         terms: terms.collect(),

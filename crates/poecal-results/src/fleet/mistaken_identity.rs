@@ -23,8 +23,8 @@ pub fn find_doubled_files<'a>(open: &[&'a LedgerRow], ledger: &'a Ledger) -> Vec
         let other = *known.entry(row.sha256(&row.file)?).or_insert(row);
         (other.serial != row.serial).then(|| {
             format!(
-                "found the same bytes as `{}` of {}, expected measurements of {}: one robot was measured, and its file was copied; find out which of both it \
-                 was, and put the file of the other one there",
+                "found the same bytes as `{}` of {}, expected measurements of {}: the file of one robot was copied; find out which robot was measured, \
+                 and replace the file of the other",
                 other.file, other.serial, row.serial
             )
         })

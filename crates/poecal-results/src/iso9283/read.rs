@@ -274,7 +274,7 @@ impl RowLabels {
     fn find(&self, data: &Dataset, row: usize, seen: &Observation) -> TestLabels {
         let path = data.files.get(seen.source.file as usize).cloned().unwrap_or_default();
         let image = || {
-            let picture = data.pictures.all.get(data.pictures.of_row(u32::try_from(row).ok()?)?)?;
+            let picture = data.pictures.all.get(data.pictures.index_of_row(u32::try_from(row).ok()?)?)?;
             self.by_image.get(picture.image.as_ref()?)
         };
         let words = self.by_line.get(&(path, seen.source.line as usize)).or_else(image);

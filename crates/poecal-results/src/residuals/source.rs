@@ -82,7 +82,7 @@ impl<'a> RowSource<'a> {
 
     /// Errors of the corners of a row that is a picture, by the errors of the row by each model.
     fn corners(&self, row: u32, errors: [&RowError; 3], corrected: Option<&RowError>) -> Option<CornerErrors> {
-        self.data.pictures.of_row(row)?;
+        self.data.pictures.index_of_row(row)?;
         let of = |error: &RowError| corner_error(self.data, row, error);
         let px = |error: &RowError| of(error).map_or(f64::NAN, |it| it.rms_px);
         let at_board_mm = of(corrected.unwrap_or(errors[2])).map_or(f64::NAN, |it| it.rms_mm);

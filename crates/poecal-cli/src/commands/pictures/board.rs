@@ -67,7 +67,7 @@ fn write_board(arguments: &Detect, (spec, out): (&BoardSpec, &Path), console: &C
 fn looks_alike(spec: &BoardSpec) -> Option<(&'static str, &'static str)> {
     const ODD: &str = "an even number of squares one way and an odd one the other distinguish both";
     const DOTS: &str =
-        "an asymmetric grid with an odd number of rows, a ChArUco board and an AprilGrid have no such doubt";
+        "an asymmetric grid with an odd number of rows, a ChArUco board and an AprilGrid have no such ambiguity";
     let half = "180 degrees";
     if let BoardSpec::Chessboard(board) = spec {
         return (board.columns + board.rows).is_multiple_of(2).then_some((half, ODD));

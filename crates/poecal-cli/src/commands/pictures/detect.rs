@@ -322,10 +322,10 @@ fn conclude(spec: &BoardSpec, all: &[DetectedPicture], corners: usize, (argument
     if found.iter().any(|it| it.turnable) {
         console.remark(if matches!(spec, BoardSpec::Circles(_)) {
             "this board looks the same turned: its first dot is the one nearest to the upper left of each picture; an asymmetric grid with an odd \
-             number of rows has no such doubt"
+             number of rows has no such ambiguity"
         } else {
             "this board looks the same turned by half a turn: its first corner is the one nearest to the upper left of each picture; a board of \
-             which one side counts an even and the other an odd number of squares has no such doubt"
+             which one side counts an even and the other an odd number of squares has no such ambiguity"
         });
     }
     if let Some(out) = &arguments.place.out {

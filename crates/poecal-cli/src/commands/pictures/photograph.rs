@@ -38,7 +38,7 @@ pub(crate) fn photograph(
     }
     if let BoardSpec::Tags(_) = arguments.board {
         return ErrorKind::Option.refuse(format!(
-            "found --board {}, whose tags may be anywhere, expected a board of known places, as charuco, chessboard, circles or aprilgrid",
+            "found --board {}, whose tags have no stated positions, expected a board with a known layout: charuco, chessboard, circles or aprilgrid",
             arguments.board
         ));
     }

@@ -1,4 +1,4 @@
-//! Pairs of lists of unequal length: some measurements were lost, others taken twice.
+//! Pairing of lists of unequal length: some measurements were lost, others were taken twice.
 
 use super::{EVIDENT, RowPair, UnpairedRows};
 use crate::state::Estimate;

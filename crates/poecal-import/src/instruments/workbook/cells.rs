@@ -22,7 +22,7 @@ pub(crate) struct RemainingAllowance {
 
 impl RemainingAllowance {
     /// The budget of a whole workbook.
-    pub(crate) fn of_workbook() -> Self {
+    pub(crate) fn new() -> Self {
         RemainingAllowance { cells: ResourceLimit::Cells.value(), texts: ResourceLimit::Unpacked.value() }
     }
 }

@@ -48,7 +48,7 @@ impl<'b> Workbook<'b> {
              save the table as `CSV UTF-8`"
         })?;
         parts.refuse_sheets(book.sheet_names().len())?;
-        Ok(Workbook::Archive(Box::new(book), RemainingAllowance::of_workbook()))
+        Ok(Workbook::Archive(Box::new(book), RemainingAllowance::new()))
     }
 
     fn names(&self) -> Vec<String> {

@@ -71,7 +71,7 @@ pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<ReadSheet>, String> {
          save the table as `CSV UTF-8`",
     )?;
     let (shared, named) = read_shared(&stream)?;
-    let mut left = RemainingAllowance::of_workbook();
+    let mut left = RemainingAllowance::new();
     let mut found = Vec::new();
     for (start, name) in named {
         let mut cells = SheetCells::default();

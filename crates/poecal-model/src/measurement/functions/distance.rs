@@ -82,7 +82,7 @@ const ANCHORS: SessionTraits = SessionTraits {
     stands: StationLayout::Around,
     drawn: MeasurementOrigin::Seen(|target, drawn| Measurement::distance(target.translation.norm() + drawn.length.x)),
     columns: &["anchor", "distance[mm]"],
-    about: "# anchor      from where the distance was measured; three places or more tell most. Where they are is found.\n\
+    about: "# anchor      name of the anchor of the distance; three or more are best. Their positions are estimated.\n\
             # distance    from there to the target.\n",
 };
 
@@ -126,7 +126,7 @@ const SPHERE: SessionTraits = SessionTraits {
         [Measurement::distance(SPHERE_M + drawn.length.x), Measurement::distance_change(0.0)]
     }),
     columns: &["sphere", "radius[mm]"],
-    about: "# sphere      the sphere that the target touches. Where it is is found.\n\
+    about: "# sphere      name of the sphere that the target touches; its position is estimated.\n\
             # radius      its radius, and that of the probe; leave it empty if it is unknown (then it is found too).\n",
 };
 

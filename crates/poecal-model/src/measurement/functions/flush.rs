@@ -70,7 +70,7 @@ const FACES: SessionTraits = SessionTraits {
         [Measurement::flush(drawn.length.x, &normal), Measurement::flush(0.0, &Vector3::z())]
     }),
     columns: &["plane", "contact"],
-    about: "# plane       the plane on which a face of the tool lies. Where it is is found.\n\
+    about: "# plane       name of the plane on which a face of the tool lies; its position is estimated.\n\
             # contact     flush, or point where a point touches it.\n",
 };
 

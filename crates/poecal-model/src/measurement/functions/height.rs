@@ -50,9 +50,9 @@ const PLANES: SessionTraits = SessionTraits {
     stands: StationLayout::Within,
     drawn: MeasurementOrigin::Touched(|drawn| [drawn.length.x, 0.0].map(Measurement::height)),
     columns: &["plane", "contact", "height[mm]"],
-    about: "# plane       the plane that is touched. Where it is is found.\n\
+    about: "# plane       name of the touched plane; its position is estimated.\n\
             # contact     point, or flush where a face lies on it.\n\
-            # height      of the target over it, as a dial gauge shows; leave it empty where it is touched.\n",
+            # height      height of the target over the plane (dial gauge); leave it empty if the target touches the plane.\n",
 };
 
 /// Range of the simulated gauge, metres.

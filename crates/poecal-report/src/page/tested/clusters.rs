@@ -13,7 +13,7 @@ const ENLARGED: [f64; 4] = [100.0, 10.0, 1.0, 0.1];
 const LONGEST: f64 = 0.5;
 /// Share of the cube's half side at which poses are (clause 6.8.3).
 const INSIDE: f64 = 0.8;
-/// Lines of a circle.
+/// Number of line segments that approximate a circle.
 const RIM: usize = 48;
 /// Length of an arrow's head, and the tangent of half its angle.
 const HEAD: f64 = 0.25;
