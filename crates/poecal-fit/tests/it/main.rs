@@ -11,3 +11,4 @@ mod pairing;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod unnamed_targets;
+mod zeros;
