@@ -89,3 +89,34 @@ def test_exceptions_from_the_style_only_become_fewer():
     found = counted()
     print(found)
     assert found == limits, "above: keep to docs/style.md; below: lower the number in tests/vocabulary.json"
+
+
+CODE_PAGES = [ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md"]
+DEFINED = re.compile(r"\b(?:struct|enum|trait|type|union|fn|mod|const|static)\s+([A-Za-z_]\w*)")
+# Names of Rust and of its tools in these pages.
+FOREIGN = {"None", "Some", "Ok", "Err", "Option", "Result", "Vec", "String", "Cargo", "Python"}
+
+
+def test_pages_and_comments_name_files_that_exist():
+    crates = {}
+    for path in SOURCES:
+        crates.setdefault(path.relative_to(ROOT).parts[1], set()).add(path.name)
+    everywhere = set().union(*crates.values())
+    missing = []
+    for path in [*CODE_PAGES, *SOURCES]:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        own = everywhere if path in CODE_PAGES else crates[path.relative_to(ROOT).parts[1]] | {"build.rs"}
+        for number, line in enumerate(lines, 1):
+            if path in CODE_PAGES or COMMENT.match(line):
+                of_crate = re.match(r"\*\*`(poecal[a-z0-9-]*)`\*\*", line)
+                files = crates[of_crate[1]] if of_crate else everywhere if "`poecal-" in line else own
+                missing += [f"{path.relative_to(ROOT)}:{number}: {name}" for name in re.findall(r"`([a-z0-9_]+\.rs)`", line) if name not in files]
+    assert missing == []
+
+
+def test_the_architecture_names_code_that_exists():
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    defined = {name for path in SOURCES for name in DEFINED.findall(path.read_text(encoding="utf-8"))}
+    named = {part for found in re.findall(r"\b[A-Za-z_]\w*(?:::\w+)+", text) for part in found.split("::")} - FOREIGN
+    crates = {path.name.replace("-", "_") for path in (ROOT / "crates").iterdir()}
+    assert named - defined - crates - {"commands", "row"} == set()

@@ -1,6 +1,6 @@
 //! All configurations of an arm with its tip at a pose.
 //!
-//! Starts come from closed forms, or, in doubt, from the roots of the arm's equations (`ways.rs`). They are refined by `newton.rs`; `held.rs` is
+//! Starts come from closed forms, or, in doubt, from the roots of the arm's equations (`solution_methods.rs`). They are refined by `newton.rs`; `held.rs` is
 //! for seven joints.
 
 mod axis;

@@ -1,7 +1,7 @@
 //! Real joint effects beyond geometry: terms of joint values and of bearings, fitted together with the screws under priors (theory.md §6).
 //!
 //! `context.rs` holds their inputs, `linear.rs` the rows as linear functions of all unknowns, and `choice.rs` chooses the sizes of priors from them.
-//! `fit.rs` is the fit with these, `frames.rs` its base and tip; `worse.rs` drops the terms if they predict rows worse. `promise.rs` is their
+//! `fit.rs` is the fit with these, `frames.rs` its base and tip; `degradation.rs` drops the terms if they predict rows worse. `predictive_covariance.rs` is their
 //! uncertainty, `effects.rs` their effects at each joint.
 
 mod choice;

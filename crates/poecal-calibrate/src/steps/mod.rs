@@ -1,7 +1,7 @@
 //! The steps of a calibration in order, and their results.
 //!
-//! `calibrate.rs` calls the steps, each once, in order, and has no formulas. These are `calibrated.rs` (the fit, a loop if several instruments have
-//! noises of their own), `corrected.rs` (a loop if the corrected model suspects other rows than geometry), `tolerance.rs` (a loop over fits and their
+//! `calibrate.rs` calls the steps, each once, in order, and has no formulas. These are `calibrated_fit.rs` (the fit, a loop if several instruments have
+//! noises of their own), `corrected_fit.rs` (a loop if the corrected model suspects other rows than geometry), `tolerance.rs` (a loop over fits and their
 //! cross-validations), and `assess.rs` (the judgement of the fit, once; figures by `figures.rs`, the level with its reasons by `verdict.rs`).
 
 pub(crate) mod assess;

@@ -1,6 +1,6 @@
 //! Robot programs in the languages of their controllers: targets corrected in place, everything else unchanged, byte for byte.
 //!
-//! `engine.rs` places and corrects targets, `fate.rs` has the outcome of a target by the motions to it, `written.rs` its numbers in the text. No
+//! `engine.rs` places and corrects targets, `target_outcomes.rs` has the outcome of a target by the motions to it, `program_text.rs` its numbers in the text. No
 //! languages here: `poecal-programs` has them.
 
 mod engine;

@@ -2,7 +2,7 @@
 //!
 //! `row_group.rs` has rows of one instrument, target and form, `column_map.rs` the unknowns in the order of the kernels; both are made once a
 //! problem. `fast.rs` sums all rows, eight side by side, and rows that are neither points nor poses by `Problem::shaped` within the kernel.
-//! `prior.rs` is the prior about nominal, `layout.rs` moves the state by a step, `curvature.rs` has second derivatives. `without_effect.rs` has the
+//! `prior.rs` is the prior about nominal, `layout.rs` moves the state by a step, `curvature.rs` has second derivatives. `null_directions.rs` has the
 //! motions without effect if blocks are held, `bundle.rs` all corners of pictures at once. The Jacobian is never stored: memory is the data and a few
 //! matrices of unknowns × unknowns.
 

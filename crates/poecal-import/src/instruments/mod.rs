@@ -1,7 +1,7 @@
 //! Files of instruments, controllers, recorders and spreadsheets, as tables in our form. They are recognised by their content, never by their
 //! names.
 //!
-//! Each form in [`FORMS`] has a module. It makes a `MadeTable` (`maker.rs`): columns, and rows of typed cells with the line of each row. This becomes a
+//! Each form in [`FORMS`] has a module. It makes a `MadeTable` (`made_table.rs`): columns, and rows of typed cells with the line of each row. This becomes a
 //! text in our form, and is read as any other. So one reader handles units, beam breaks, scales and errors. A file that holds joint readings and
 //! measurements at once (`recording.rs`) is two entries of the plan of files. `marker_words.rs` reports the markers that their distances
 //! distinguish.

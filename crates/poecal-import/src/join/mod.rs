@@ -2,10 +2,10 @@
 //!
 //! `join_plan.rs` finds the files with joint readings only and those with measurements only. `read/joining.rs` reads the measurements twice, first
 //! without readings. `join_pairs.rs` pairs them by names or by their order, and reports it. Recordings in time are first reduced to the robot's
-//! static intervals (`streams.rs`). The robot decides whether pairs are right (`poecal-fit`'s `start/pairing`). Each line of the measurements then
+//! static intervals (`poecal-fit`'s `pairing`). The robot decides whether pairs are right (`poecal-fit`'s `start/pairing`). Each line of the measurements then
 //! has its readings, and all else proceeds as if one file had both. `set_choice.rs` and `shifted_header.rs` use the robot to determine which of two
-//! sets was measured, and whether names are above their values. `join_entry.rs` and `motions.rs` keep the record for `calibration.json` and the
-//! report.
+//! sets was measured, and whether names are above their values. `join_entry.rs` keeps the record for `calibration.json` and
+//! the report.
 
 pub(crate) mod input_roles;
 pub(crate) mod join_entry;

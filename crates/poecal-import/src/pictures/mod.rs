@@ -1,6 +1,6 @@
 //! Pictures and corners as rows, cameras and boards of files.
 //!
-//! `corner_columns.rs` finds the columns of corners, `stated.rs` the values of a file of cameras or boards by their keys. `board_files.rs` converts
+//! `corner_columns.rs` finds the columns of corners, `keyed_values.rs` the values of a file of cameras or boards by their keys. `board_files.rs` converts
 //! boards of other programs into words.
 
 pub(crate) mod append_row;

@@ -1,7 +1,7 @@
 //! Poses of the flange and of the target that it carries, as lists and as pairs.
 //!
 //! `pose_columns.rs` converts names of columns to forms, `pose_file.rs` reads one file, with joint readings too, `pose_lists.rs` one file or two.
-//! `samples.rs` reads lists of other programs, `sixteen.rs` matrices in columns, `picture_poses.rs` the target by corners. `pose_readings.rs` finds
+//! `samples.rs` reads lists of other programs, `matrix_columns.rs` matrices in columns, `picture_poses.rs` the target by corners. `pose_readings.rs` finds
 //! other interpretations of the numbers.
 
 pub(crate) mod matrix_columns;

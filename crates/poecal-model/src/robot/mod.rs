@@ -1,7 +1,7 @@
 //! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. Estimation and files are elsewhere.
 //!
 //! [`Robot`] is a tree of joints, a serial chain by default, with the bodies of instruments and targets (`body.rs`). Errors of joints beyond
-//! geometry are more joints, or terms of their values: a link that tilts is a joint without a reading (`give.rs`), and moments of weights are in
+//! geometry are more joints, or terms of their values: a link that tilts is a joint without a reading (`compliance.rs`), and moments of weights are in
 //! `statics.rs`. Unknowns and measured data are elsewhere.
 
 mod arm;

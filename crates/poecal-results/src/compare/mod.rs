@@ -2,7 +2,7 @@
 //! calibrations*).
 //!
 //! Offset, tilt and shift of each joint come with base and tool in the best fit (`poecal-model`'s `offsets`), and their covariance from both files
-//! (`spread.rs`). This module has numbers only; `poecal-report` has the words and tables.
+//! (`change_covariance.rs`). This module has numbers only; `poecal-report` has the words and tables.
 
 mod change_covariance;
 mod chi_square;

@@ -1,7 +1,7 @@
 //! Exports: a calibrated robot in the forms of controllers, drivers, simulators and other tools, each read back and compared.
 //!
 //! One module for each form, from axis frames or DH tables (`poecal-model`'s `forms`), with a variant of [`ExportFormat`]. The text is read back on
-//! 1,000 configurations. `onto.rs` puts the numbers in a URDF that is named instead (`--onto`, `poecal export --onto`).
+//! 1,000 configurations. `onto_urdf.rs` puts the numbers in a URDF that is named instead (`--onto`, `poecal export --onto`).
 
 mod export_check;
 mod mjcf;

@@ -7,7 +7,7 @@
 //! A folder that holds nothing but results is exchanged whole. In any other folder, files are renamed one by one by a journal. That holds for the
 //! current folder too, whose earlier state an open shell or a bind mount would still show. The journal is on the disk before the first rename,
 //! together with the journal that undoes it: a full disk may cause a failure. A lock on the staging folder shows whether its run is still active. A
-//! signal cleans up at once (`interrupted.rs`), but not while files are put in place.
+//! signal cleans up at once (`interruption.rs`), but not while files are put in place.
 
 mod calibration;
 mod contents;

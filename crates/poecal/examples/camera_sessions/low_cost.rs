@@ -165,14 +165,8 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
         Ok((calibration, data)) => {
             let mut readings = Vec::new();
             for (joints, _) in all.iter().skip(COUNT) {
-                // Reading of the motor without play.
-                let motors: Vec<f64> = joints
-                    .iter()
-                    .zip(&arm.signs)
-                    .zip(&arm.zeros)
-                    .map(|((joint, sign), zero)| sign * (joint - zero))
-                    .collect();
-                let mut own = motors;
+                // Play and ticks belong to the motion that is predicted.
+                let mut own = arm.motors(joints, &mut generator);
                 found.apply(&mut own);
                 readings.extend(own);
             }

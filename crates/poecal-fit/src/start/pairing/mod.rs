@@ -1,7 +1,7 @@
 //! Assignment of joint readings to measurements if two files have them: the error of the registered nominal robot is least for right pairs.
 //!
 //! The robot decides whether pairs are right. The same rows are registered in other orders, and lists of unequal length are aligned. Static intervals
-//! of recordings are detected (`stands.rs`), and those of two clocks are paired by their lag (`lags.rs`).
+//! of recordings are detected (`static_intervals.rs`), and those of two clocks are paired by their lag (`lags.rs`).
 
 mod agreement;
 mod interval_means;
