@@ -334,7 +334,7 @@ mod tests {
         assert_eq!(message("1"), "found `1` without a unit, expected a number with a unit, like 2mm or 1deg");
         assert_eq!(
             message("2mm,1grad"),
-            "found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec"
+            "found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec, ticks"
         );
     }
 }

@@ -156,13 +156,13 @@ fn bad_cells_get_one_sentence_each() {
 fn values_of_another_scale_name_the_likely_unit() {
     check(&[
         case(CALIBRATE, format!("{HEADER}45,0.2,0.3,0.7,0.1,0.5\n-120,0.3,0.3,0.7,0.1,0.5\n"),
-             "bad.csv:3:1: found readings of up to 120 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, expected another unit, most likely deg; write `a[deg]` in the header, or say --units deg"),
+             "bad.csv:3:1: found readings of up to 120 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, expected another unit, most likely deg; write `a[deg]` in the header, or state --units deg"),
         case(CALIBRATE, format!("{HEADER}0.5,200,0.3,0.7,0.1,0.5\n0.1,300,0.3,0.7,0.1,0.5\n"),
              "bad.csv:3:5: found readings of up to 300 m, far outside the limits 0 to 0.5 m of joint `lift`, expected…"),
         case(CALIBRATE, format!("{HEADER}0.5,0.2,0.3,700,100,500\n0.1,0.3,0.3,-700,0,300\n"),
-             "bad.csv:3: found positions up to 1418 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or say --units mm"),
+             "bad.csv:3: found positions up to 1418 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or state --units mm"),
         case(CALIBRATE, format!("{HEADER}0.5,0.2,0.3,0.7,0.1,500\n0.1,0.3,0.3,-0.7,0,-300\n"),
-             "bad.csv:3: found values of `z` up to 800 m from their middle, where the robot reaches 1.583 m, beside `x` and `y`, which it can reach, expected another unit, most likely mm; write `z[mm]` in the header, or say --units mm"),
+             "bad.csv:3: found values of `z` up to 800 m from their middle, where the robot reaches 1.583 m, beside `x` and `y`, which it can reach, expected another unit, most likely mm; write `z[mm]` in the header, or state --units mm"),
     ]);
 }
 
@@ -250,7 +250,7 @@ fn bad_use_gets_one_sentence_each() {
         case("simulate robot.urdf --out made --errors -1deg,2mm", "",
              "--errors: found `-1deg`, expected a number not below 0, with a unit, like 2mm or 1deg"),
         case("simulate robot.urdf --out made --noise 1grad", "",
-             "--noise: found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec"),
+             "--noise: found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec, ticks"),
         case("calibrate robot.urdf good.csv --sigma-rotation tiny", "",
              "--sigma-rotation: found `tiny`, expected a number with a unit, like 0.01deg"),
         case("calibrate robot.urdf good.csv --seed 1.5", "", "--seed: found `1.5`, expected a whole number"),

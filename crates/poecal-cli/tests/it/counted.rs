@@ -359,7 +359,7 @@ fn exports_say_what_the_controller_counts() {
     assert!((of("counted", 2) - (of("joints", 2) - of("joints", 1))).abs() < 1e-12);
     assert!((of("counted", 0) + of("joints", 0)).abs() < 1e-12 && of("joints", 0).abs() > 0.0);
     let lerobot = folder.run("export results/calibration.json --format lerobot");
-    assert!(lerobot.code == 2 && lerobot.err.contains("expected those of the motors"), "{}", lerobot.err);
+    assert!(lerobot.code == 2 && lerobot.err.contains("expected those of one motor for each joint"), "{}", lerobot.err);
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn mistakes_get_a_sentence() {
         ),
         (
             "export column.toml --format urdf --offset turn=1mm",
-            "--offset: joint `turn`: found the unit `mm`, expected an angle (rad, mrad, deg, arcmin, arcsec)",
+            "--offset: joint `turn`: found the unit `mm`, expected an angle (rad, mrad, deg, arcmin, arcsec, ticks)",
         ),
         (
             "export column.toml --format urdf --offset slide=1deg",

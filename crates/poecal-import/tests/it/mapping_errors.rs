@@ -20,11 +20,11 @@ const MAPPINGS: &[(&str, &str)] = &[
     ("[position]\ncolumns = [\"x\", \"y\"]", "map.toml:2:11: invalid length 2, expected an array of length 3"),
     (
         "[joints]\na = { unit = \"grad\" }",
-        "map.toml:2:14: found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec",
+        "map.toml:2:14: found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec, ticks",
     ),
     (
         "[joints]\na = { unit = \"mm\" }",
-        "map.toml: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec)",
+        "map.toml: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec, ticks)",
     ),
     (
         "[joints]\na = { colum = \"x\" }",
@@ -56,7 +56,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[joints]\na = { columns = { a = 1 }, unit = \"mm\" }",
-        "map.toml: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec)",
+        "map.toml: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec, ticks)",
     ),
     (
         "sigma_position = { columns = { x = 1 } }",
@@ -160,6 +160,6 @@ fn a_mapping_that_is_not_there_is_refused() {
     let folder = Folder::new();
     assert_eq!(
         folder.without_path(&ColumnMap::read(folder.path("none.toml")).unwrap_err().to_string()),
-        "none.toml: found no such file, expected a column mapping (TOML): check the path"
+        "none.toml: found no such file, expected a column mapping (TOML, or LeRobot's JSON): check the path"
     );
 }

@@ -77,7 +77,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a[mm],lift,b,x,y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:1: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec)",
+        "points.csv:1:1: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec, ticks)",
     ),
     (
         b"a,lift[deg],b,x,y,z\n0,0,0,1,2,3\n",
@@ -238,7 +238,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x,y,z\n90,0,0,1,2,3\n-45.5,0,0,1,2,3\n",
-        "points.csv:2:1: found readings of up to 90 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, expected another unit, most likely deg; write `a[deg]` in the header, or say --units deg",
+        "points.csv:2:1: found readings of up to 90 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, expected another unit, most likely deg; write `a[deg]` in the header, or state --units deg",
     ),
     (
         b"a[rad],lift,b,x,y,z\n900,0,0,1,2,3\n-3100,0,0,1,2,3\n",
@@ -246,15 +246,15 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x,y,z\n0,0,120,1,2,3\n0,0,-40,1,2,3\n",
-        "points.csv:2:5: found readings of up to 120 rad, too far for joint `b`, expected another unit, most likely deg; write `b[deg]` in the header, or say --units deg",
+        "points.csv:2:5: found readings of up to 120 rad, too far for joint `b`, expected another unit, most likely deg; write `b[deg]` in the header, or state --units deg",
     ),
     (
         b"a,lift,b,x,y,z\n0,300,0,1,2,3\n0,20,0,1,2,3\n",
-        "points.csv:2:3: found readings of up to 300 m, far outside the limits 0 to 0.5 m of joint `lift`, expected another unit, most likely mm; write `lift[mm]` in the header, or say --units mm",
+        "points.csv:2:3: found readings of up to 300 m, far outside the limits 0 to 0.5 m of joint `lift`, expected another unit, most likely mm; write `lift[mm]` in the header, or state --units mm",
     ),
     (
         b"a,lift,b,x,y,z\n0,0,0,900,0,0\n1,0,0,100,-900,0\n2,0,0,-800,100,0\n",
-        "points.csv:4: found positions up to 905.5 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or say --units mm",
+        "points.csv:4: found positions up to 905.5 m from their middle, where the robot reaches 1.583 m, expected another unit, most likely mm; write `x[mm],y[mm],z[mm]` in the header, or state --units mm",
     ),
     (
         b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,9e5,0,0\n1,0,0,0,-9e5,0\n2,0,0,-8e5,0,0\n",
@@ -385,7 +385,7 @@ fn joint_tables_are_checked_too() {
     assert_eq!(
         message("a,lift,b\n170,0,0\n-30,0,2\n"),
         "joints.csv:2:1: found readings of up to 170 rad, far outside the limits -3.15 to 3.15 rad of joint `a`, \
-         expected another unit, most likely deg; write `a[deg]` in the header, or say --units deg"
+         expected another unit, most likely deg; write `a[deg]` in the header, or state --units deg"
     );
 }
 

@@ -276,7 +276,7 @@ pub(crate) const CASES: &[Case] = &[
         name: "the same configurations again", robot: elbow, kind: SessionKind::POSE, count: 60,
         motion: repeat_configurations,
         words: "24 of 30\n\
-                open 6: too few configurations: 60 rows repeat 4, which give 24 numbers for 30 unknowns",
+                open 6: too few configurations: 60 rows repeat 4, which are 24 numbers for 30 unknowns",
     },
     Case {
         name: "gantry with a frozen slide", robot: gantry, kind: SessionKind::POSE, count: 60,
