@@ -5,7 +5,7 @@ export type Value = string | number;
 
 /** Options of `poecal calibrate`, by their long names. */
 export interface CalibrateOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -27,8 +27,8 @@ export interface CalibrateOptions {
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   deviceFrames?: "common" | "per-file";
   /**
-   * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
-   * stood still and lists by their order, if the nominal model fits no other match as well]
+   * Match of rows of a joint file with rows of a measurement file [default: by name, else recordings by the times at which the robot stood
+   * still and lists by their order, if the nominal model fits no other match as well]
    */
   join?: "name" | "rows" | "time" | "motion";
   /** Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found] */
@@ -72,14 +72,14 @@ export interface CalibrateOptions {
   /** Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data] */
   sigmaRotation?: Value | readonly Value[];
   /**
-   * How far the axes may be from the model's (the prior): standard deviations of their directions and places, or none. They matter only
-   * where the measurements leave an axis open, which then stays near the model. auto chooses by cross-validation among 0.05deg,0.5mm,
-   * 0.2deg,2mm, 0.5deg,5mm, 1deg,10mm and 3deg,10mm. A joint of a TOML model may state its own. MOC.cfg of an ABB controller with Absolute
-   * Accuracy has the deviations that the maker found [default: 0.5deg,5mm]
+   * Deviations of the axes from the model (the prior): standard deviations of their directions and places, or none. They matter only where
+   * the measurements leave an axis open, which then stays near the model. auto chooses by cross-validation among 0.05deg,0.5mm, 0.2deg,2mm,
+   * 0.5deg,5mm, 1deg,10mm and 3deg,10mm. A joint of a TOML model may state its own. MOC.cfg of an ABB controller with Absolute Accuracy has
+   * the deviations that the maker found [default: 0.5deg,5mm]
    */
   tolerance?: Value | readonly Value[];
   /**
-   * What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks among more of them; groups
+   * Joint effects beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks among more of them; groups
    * of terms with their sizes in radians or metres, sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout
    * [default: auto]
    */
@@ -92,7 +92,7 @@ export interface CalibrateOptions {
    */
   factors?: Value | readonly Value[];
   /**
-   * Where gravity pulls, in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
+   * Direction of gravity in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
    * leave the least noise [default: 0,0,-1]
    */
   gravity?: Value | readonly Value[];
@@ -108,9 +108,12 @@ export interface CalibrateOptions {
    * the model, and the point is the target `measured`
    */
   moveTip?: boolean;
-  /** How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers */
+  /** Treatment of outliers: auto fits by least squares, and by the tukey loss where that shows outliers */
   robust?: "auto" | "off" | "huber" | "cauchy" | "tukey";
-  /** What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole */
+  /**
+   * Treatment of a device, a target, a nest or a joint's zero that moved during the session, and of configurations that are wrong as a
+   * whole
+   */
   repair?: "auto" | "off";
   /**
    * Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), with its turn as an arc at a third of the robot's reach;
@@ -141,7 +144,7 @@ export interface CalibrateOptions {
   /** File for the report, or `none` [default: report.html among the results] */
   report?: Value | readonly Value[];
   /**
-   * What the report states of the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
+   * Entries of the report on the session, like serial=4711 (repeatable): certificate, laboratory, customer, robot, serial, instrument,
    * instrument_calibrated, tool, payload, speed, warm_up, operator, date, place, temperature, valid_until or note
    */
   record?: Value | readonly Value[];
@@ -149,7 +152,7 @@ export interface CalibrateOptions {
 
 /** Options of `poecal validate`, by their long names. */
 export interface ValidateOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -160,8 +163,8 @@ export interface ValidateOptions {
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   deviceFrames?: "common" | "per-file";
   /**
-   * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
-   * stood still and lists by their order, if the nominal model fits no other match as well]
+   * Match of rows of a joint file with rows of a measurement file [default: by name, else recordings by the times at which the robot stood
+   * still and lists by their order, if the nominal model fits no other match as well]
    */
   join?: "name" | "rows" | "time" | "motion";
   /** Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found] */
@@ -220,7 +223,7 @@ export interface ValidateOptions {
   acceptModel?: "corrected" | "calibrated";
   /** File for the report, or `none` [default: report.html among the results] */
   report?: Value | readonly Value[];
-  /** What the report states of this session, like operator=Mia (repeatable): the keys of `poecal calibrate` */
+  /** Entries of the report on this session, like operator=Mia (repeatable): the keys of `poecal calibrate` */
   record?: Value | readonly Value[];
   /** File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration] */
   history?: Value | readonly Value[];
@@ -228,7 +231,7 @@ export interface ValidateOptions {
 
 /** Options of `poecal predict`, by their long names. */
 export interface PredictOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -253,7 +256,7 @@ export interface PredictOptions {
 
 /** Options of `poecal check`, by their long names. */
 export interface CheckOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -275,8 +278,8 @@ export interface CheckOptions {
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
   deviceFrames?: "common" | "per-file";
   /**
-   * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
-   * stood still and lists by their order, if the nominal model fits no other match as well]
+   * Match of rows of a joint file with rows of a measurement file [default: by name, else recordings by the times at which the robot stood
+   * still and lists by their order, if the nominal model fits no other match as well]
    */
   join?: "name" | "rows" | "time" | "motion";
   /** Clock offset of two recordings, the measurements' time less that of the joint readings, where several fit [default: found] */
@@ -319,7 +322,7 @@ export interface CheckOptions {
 
 /** Options of `poecal plan`, by their long names. */
 export interface PlanOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -357,11 +360,11 @@ export interface PlanOptions {
   purpose?: Value | readonly Value[];
   /** Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration] */
   repeatability?: Value | readonly Value[];
-  /** Whether the tool with its targets will be on the flange as it was [default: same] */
+  /** State of the tool with its targets at the visits: same if it stays on the flange [default: same] */
   tool?: "same" | "refit";
   /** Rows of an earlier visit whose configurations may be repeated [default: the measurements that the calibration was made of] */
   reference?: Value | readonly Value[];
-  /** What will be measured of the tip */
+  /** Quantity that will be measured of the tip */
   kind?: "pose" | "mixed" | "relative" | "point" | "component" | "distance" | "ball-bar" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction";
   /** Number of different configurations to fit [with --purpose drift: to measure at each visit, by default 8] [default: 30] */
   count?: Value | readonly Value[];
@@ -370,8 +373,8 @@ export interface PlanOptions {
   /** Choose from these configurations alone (a table of joint readings) */
   candidates?: Value | readonly Value[];
   /**
-   * Where the robot will work and predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip
-   * in a box of the base frame, from one corner to the other [default: limits]
+   * Workspace in which predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip in a box of
+   * the base frame, from one corner to the other [default: limits]
    */
   workspace?: Value | readonly Value[];
   /**
@@ -384,12 +387,12 @@ export interface PlanOptions {
    * degrees of them, and all other rows stay. The list has all rows then, in their order
    */
   replaceRows?: Value | readonly Value[];
-  /** What the list shall be good at */
+  /** Purpose of the list */
   criterion?: "expected" | "D" | "A" | "E" | "G";
   /** Number of targets of a nest at the tip, all measured in each configuration [default: 1] */
   targets?: Value | readonly Value[];
   /**
-   * Where the target is in the tip's frame, of several the first, the others turned about z, like 50,0,30mm [default: the targets of the
+   * Position of the target in the tip's frame, of several the first, the others turned about z, like 50,0,30mm [default: the targets of the
    * model, or the tip]
    */
   targetOffset?: Value | readonly Value[];
@@ -405,18 +408,18 @@ export interface PlanOptions {
   /** The measuring device's frame */
   deviceFrame?: "unknown" | "base";
   /**
-   * How far the axes may be from the model's (the prior of the fit): standard deviations of their directions and places, or none [default:
+   * Deviations of the axes from the model (the prior of the fit): standard deviations of their directions and places, or none [default:
    * 0.5deg,5mm]
    */
   tolerance?: Value | readonly Value[];
   /**
-   * What joints are expected to do beyond geometry: auto and all terms of the common sizes, off nothing, or groups with their sizes, as of
+   * Joint effects that are expected beyond geometry: auto and all terms of the common sizes, off nothing, or groups with their sizes, as of
    * poecal calibrate [default: auto]
    */
   corrections?: Value | readonly Value[];
-  /** Where gravity pulls, in the robot's base frame [default: 0,0,-1] */
+  /** Direction of gravity in the robot's base frame [default: 0,0,-1] */
   gravity?: Value | readonly Value[];
-  /** How far every joint stays from its limits [default: 2deg,5mm; of a list that is stated none] */
+  /** Distance of every joint from its limits [default: 2deg,5mm; of a list that is stated none] */
   margin?: Value | readonly Value[];
   /** Box into which no part of the robot may reach, by two corners (repeatable) */
   keepOut?: Value | readonly Value[];
@@ -425,13 +428,13 @@ export interface PlanOptions {
   /** Least change of some joint between any two configurations */
   separation?: Value | readonly Value[];
   /**
-   * Where the measuring device is; targets that links hide from it are left out. With --purpose drift: known where it will stand as it
+   * Position of the measuring device; targets that links hide from it are left out. With --purpose drift: known where it will stand as it
    * stood, as on fixed nests, or refit
    */
   device?: Value | readonly Value[];
   /** Half the angle of the device's cone, about the direction from it to --device-aim */
   deviceHalfAngle?: Value | readonly Value[];
-  /** Where the device looks [default: the base] */
+  /** Point at which the device is aimed [default: the base] */
   deviceAim?: Value | readonly Value[];
   /** Least and largest distance of the target from the device, like 0.5m:10m */
   distance?: Value | readonly Value[];
@@ -439,9 +442,9 @@ export interface PlanOptions {
   targetHalfAngle?: Value | readonly Value[];
   /** The direction in which the target looks, in its own frame [default: 0,0,1] */
   targetNormal?: Value | readonly Value[];
-  /** Whether links may overlap by their shapes in the URDF: capsules around these, so that a little room is lost */
+  /** Check of links that overlap by their shapes in the URDF: capsules around these, so that a little room is lost */
   selfCollision?: "avoid" | "ignore";
-  /** How long the robot stands at each row, for how long all takes [default: 30s] */
+  /** Dwell at each row, for the duration of the whole [default: 30s] */
   stop?: Value | readonly Value[];
   /** Seed of everything random [default: 1] */
   seed?: Value | readonly Value[];
@@ -456,7 +459,7 @@ export interface PlanOptions {
 
 /** Options of `poecal export`, by their long names. */
 export interface ExportOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -484,7 +487,7 @@ export interface ExportOptions {
 
 /** Options of `poecal simulate`, by their long names. */
 export interface SimulateOptions {
-  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  /** Most that a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
   wait?: Value | readonly Value[];
@@ -504,11 +507,11 @@ export interface SimulateOptions {
   /** Standard deviations of each measured component; with --camera, of what the arm is off in each configuration [default: 0.05mm,0.01deg] */
   noise?: Value | readonly Value[];
   /**
-   * What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres,
-   * sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout [default: off]
+   * Joint effects beyond geometry: groups of terms with the standard deviations of their random coefficients in radians or metres, sag,
+   * tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout [default: off]
    */
   terms?: Value | readonly Value[];
-  /** Where gravity pulls, in the robot's base frame [default: 0,0,-1] */
+  /** Direction of gravity in the robot's base frame [default: 0,0,-1] */
   gravity?: Value | readonly Value[];
   /** Number of measurements [default: 50] */
   count?: Value | readonly Value[];
@@ -528,24 +531,24 @@ export interface SimulateOptions {
 
 /** A finished calibration. */
 export type CalibrationFile = {
-  /** Whether the limits that were asked for are kept; absent if none were. */
+  /** Result of the requested acceptance limits; absent if none were requested. */
   acceptance?: Acceptance | null;
   /** Errors of the nominal, registered and calibrated model on training and held-out rows. */
   accuracy: Accuracy;
-  /** What was fitted and what held, where that is not the usual: all axes, targets and frames. */
+  /** Fitted and held blocks, if they differ from the default: all axes, targets and frames. */
   blocks?: BlocksEntry | null;
   /** Clocks of instruments that measured in motion; absent where none did. */
   clocks?: ClockEntry[];
-  /** Directions in which corrections of several joints are known only together; absent where there is none. */
+  /** Directions in which the measurements determine corrections of several joints only together; absent if there are none. */
   common?: CommonDirectionEntry[];
   /**
-   * How far programs for the nominal robot miss in the sampled workspace, and the corrections of the joints that mend it; absent where the
-   * calibration is not to be used, and of a robot whose tip not every joint moves.
+   * Error of programs for the nominal robot in the sampled workspace, and the joint corrections that remove it. Absent if the calibration
+   * is not to be used, or if some joint does not move the robot's tip.
    */
   compensation?: CompensationEntry | null;
-  /** How the readings of the joints are made of those that the controller counts; absent where they are the same. */
+  /** Mapping from the controller's counts to the readings of the joints; absent if they are equal. */
   controller?: Controller | null;
-  /** The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for. */
+  /** The corrected model: screws and terms of the joints fitted together; absent if no terms were requested. */
   corrected?: CorrectedEntry | null;
   /** Each joint's correction. */
   corrections?: CorrectionEntry[];
@@ -553,9 +556,9 @@ export type CalibrationFile = {
   coverage?: JointCoverage[];
   /** Cross-validation: errors of rows that are predicted by a fit of the others; null if there are too few. */
   cross_validation?: CrossValidationEntry | null;
-  /** Mistakes in the input: named, not corrected. */
+  /** Mistakes in the input: reported, not corrected. */
   diagnosis?: DiagnosisEntry[];
-  /** Which unknowns the measurements determine. */
+  /** Determination of the unknowns by the measurements. */
   identifiability: IdentifiabilityEntry;
   /** Inputs. */
   inputs: Inputs;
@@ -565,7 +568,7 @@ export type CalibrationFile = {
   joints: JointEntry[];
   /** Frame of the measuring device. */
   measurement_frame: FrameEntry;
-  /** Whether the point that was measured became the tip (`--move-tip`); otherwise the tip is where the model has it on the last link. */
+  /** True if the measured point became the tip (`--move-tip`); otherwise the tip is the model's, on the last link. */
   move_tip?: boolean;
   /** Noise by which residuals were weighted. */
   noise: NoiseEntry;
@@ -575,11 +578,11 @@ export type CalibrationFile = {
   pictures?: PicturesEntry | null;
   /** Version of the program. */
   poecal_version: string;
-  /** Joints that were calibrated anew since, by `poecal track --recalibrate`, in order; all else is of the calibration before. */
+  /** Joints that were recalibrated since, by `poecal track --recalibrate`, in order; everything else is of the earlier calibration. */
   recalibrated?: RecalibratedEntry[];
-  /** What is stated of the session; absent if nothing is. */
+  /** Statements about the session; absent if there are none. */
   record?: Record;
-  /** What happened during the session and was repaired; all else in this file is of the repaired session. */
+  /** Events of the session that were repaired; everything else in this file is of the repaired session. */
   repairs?: Event[];
   /** Configurations that were measured several times; null if there are none. */
   repeatability?: RepeatabilityEntry | null;
@@ -593,12 +596,15 @@ export type CalibrationFile = {
   solver: SolverEntry;
   /** Stations of the measuring device, if they are named or several; the first is that of `measurement_frame`. */
   stations?: StationEntry[];
-  /** Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there. */
+  /**
+   * Configurations in which all targets are suspected with similar residuals, the worst first, at most 100: the arm or its readings are
+   * wrong there.
+   */
   suspected_configurations?: SuspectedConfigurationEntry[];
-  /** What seems to have happened and was not repaired. */
+  /** Probable events that were not repaired. */
   suspicions?: Event[];
   /**
-   * Targets by their names, `measured` where no row names one: in the tip frame, or on a body of their own (`on`). None where `move_tip` is
+   * Targets by their names, `measured` if no row names one: in the tip frame, or on a body of their own (`on`). Empty if `move_tip` is
    * true.
    */
   targets: { [name: string]: TargetEntry };
@@ -606,31 +612,31 @@ export type CalibrationFile = {
   tool: PoseEntry;
   /** Expected errors of predictions; null without more residuals than unknowns. */
   uncertainty?: UncertaintyEntry | null;
-  /** Verdict: whether the result is good to use, and where. */
+  /** Verdict: fitness of the result for use, and its domain. */
   verdict?: Verdict | null;
   /** Warnings, a sentence each. */
   warnings?: string[];
 };
 
-/** Whether a calibration keeps the limits that were asked for. */
+/** Decision whether a calibration keeps the requested limits. */
 export type Acceptance = {
-  /** By which rows. */
+  /** Rows that decided. */
   by: AcceptedRows;
   /** The worst decision of all limits. */
   decision: Decision;
   /** Each limit, by quantity. */
   limits: AcceptedLimit[];
-  /** Which model was judged. */
+  /** Judged model. */
   model: AcceptedModel;
 };
 
-/** A limit, what was found, and the decision. Numbers are in millimetres or degrees. */
+/** Limit, observed figure and decision. Numbers are in millimetres or degrees. */
 export type AcceptedLimit = {
-  /** Number of different configurations among them, which are what counts. */
+  /** Number of different configurations among them; these count as independent. */
   configurations: number;
-  /** What that says of the limit. */
+  /** Decision by these bounds. */
   decision: Decision;
-  /** What the rows have. */
+  /** Figure observed on the rows. */
   found: number;
   /** Lower bound, with 95 % confidence. */
   from: number;
@@ -640,9 +646,9 @@ export type AcceptedLimit = {
   quantity: string;
   /** Number of rows that measured the quantity. */
   rows: number;
-  /** What of the errors is limited. */
+  /** Limited statistic of the errors. */
   statistic: AcceptedStatistic;
-  /** Upper bound, with 95 % confidence; null where the rows are too few for one. */
+  /** Upper bound, with 95 % confidence; null if the rows are too few for one. */
   to?: number | null;
   /** Unit of the numbers: `mm` or `deg`. */
   unit: string;
@@ -651,15 +657,15 @@ export type AcceptedLimit = {
 /** Which model is judged. */
 export type AcceptedModel = "corrected" | "calibrated";
 
-/** Which rows decided. */
+/** Rows that decided. */
 export type AcceptedRows = "held_out" | "cross_validation" | "judged";
 
-/** What of the errors is limited. */
+/** Statistic of the errors that is limited. */
 export type AcceptedStatistic = "rms" | "p95" | "max";
 
 /** Errors on training and held-out rows. */
 export type Accuracy = {
-  /** Number of configurations where all were fitted because too few would have been held out; absent otherwise. */
+  /** Number of configurations, if all were fitted because too few would have been held out; absent otherwise. */
   few_configurations?: number | null;
   /** On the held-out rows; null if there are none. */
   held_out?: SetAccuracy | null;
@@ -667,14 +673,14 @@ export type Accuracy = {
   training: SetAccuracy;
 };
 
-/** Whether the residuals count as the robot's or the instrument's. */
+/** Source of the residuals: robot or instrument. */
 export type Attribution = "robot" | "stated_noise" | "repeats";
 
 /** Tilt and shift of an axis. */
 export type AxisEntry = {
-  /** Of its place, millimetres; null of a joint that slides. */
+  /** Shift of its position, millimetres; null for a joint that slides. */
   shift_mm?: number | null;
-  /** Of its direction, degrees. */
+  /** Tilt of its direction, degrees. */
   tilt_deg?: number | null;
 };
 
@@ -682,15 +688,15 @@ export type AxisEntry = {
 export type BlocksEntry = {
   /** Fitted. */
   free: string[];
-  /** Held as in the model; terms that are none are not listed. */
+  /** Held as in the model; terms that are zero are not listed. */
   held: string[];
 };
 
 /** A body of known points. */
 export type BoardEntry = {
-  /** Its name. */
+  /** Name. */
   name: string;
-  /** Its points. */
+  /** Points. */
   points: PointEntry[];
 };
 
@@ -703,31 +709,15 @@ export type BodyEntry = "base" | {
 export type BootstrapEntry = {
   /** Number of samples: neighbourhoods of rows, with replacement. */
   drawings: number;
-  /** The same by the covariance, for white noise, millimetres. */
+  /** Root mean square distance by the covariance, for white noise, millimetres. */
   formal_sigma_position_mm: number;
   /** Root mean square distance over these samples, millimetres. */
   sigma_position_mm: number;
 };
 
-/** Of the training rows and of those held out. */
-export type BySet = {
-  /** Of the held-out rows. */
-  held_out: number;
-  /** Of the training rows. */
-  training: number;
-};
-
-/** Of the training rows and of those held out. */
-export type BySet2 = {
-  /** Of the held-out rows. */
-  held_out?: SetAccuracy | null;
-  /** Of the training rows. */
-  training?: SetAccuracy | null;
-};
-
 /** A camera with its lens. */
 export type CameraEntry = {
-  /** Where the axis meets the picture, pixels; the centre of the first pixel is (0, 0). */
+  /** Intersection of the axis with the picture, pixels; the centre of the first pixel is (0, 0). */
   centre_px: [number, number];
   /** Coefficients of the distortion. */
   distortion: number[];
@@ -735,21 +725,21 @@ export type CameraEntry = {
   focal_px: [number, number];
   /** `brown` with k1, k2, p1, p2, k3, k4, k5, k6 in OpenCV's order, or `fisheye` with k1 to k4. */
   model: string;
-  /** Its name. */
+  /** Name. */
   name: string;
   /** Width and height, pixels; null if they are not known. */
   size_px?: [number, number] | null;
 };
 
-/** Why something is not determined. The words stand in `calibration.json` and do not change. */
+/** Cause of an undetermined direction. The words appear in `calibration.json` and do not change. */
 export type Cause = "own_axis" | "base_frame" | "joint_offsets" | "no_orientation" | "unseen" | "stood_still" | "too_few" | "point_on_axis" | "one_orientation" | "one_turning_direction" | "moved_together" | "small_motion" | "dependent_motion" | "no_length" | "seen_once" | "other";
 
-/** What the common error of the corners of a picture turns about. */
+/** Centre of the turn of the shared error of a picture's corners. */
 export type Centre = "board" | "camera";
 
 /**
- * The clock of an instrument whose rows were measured in motion, beside that of the joint readings: a measurement at its time t belongs to
- * the readings at `t - lag - drift (t - middle)`.
+ * The clock of an instrument whose rows were measured in motion, relative to that of the joint readings. A measurement at its time t
+ * belongs to the readings at `t - lag - drift (t - middle)`.
  */
 export type ClockEntry = {
   /** Growth of the lag, parts per million. */
@@ -760,13 +750,13 @@ export type ClockEntry = {
   lag_s: number;
   /** The middle of the recording by the clock of the instrument, seconds. */
   middle_s: number;
-  /** Its standard deviation; absent likewise. */
+  /** Its standard deviation; absent as for the lag. */
   sigma_drift_ppm?: number | null;
   /** Its standard deviation, milliseconds; absent where the lag was held, and without more residuals than unknowns. */
   sigma_lag_ms?: number | null;
 };
 
-/** A direction in which corrections of several joints are known only together. */
+/** A direction in which the measurements determine corrections of several joints only together. */
 export type CommonDirectionEntry = {
   /** Root mean square change of predicted positions by one standard deviation, at the measured configurations, millimetres. */
   effect_mm: number;
@@ -774,17 +764,17 @@ export type CommonDirectionEntry = {
   joints: string[];
   /** Its share in the variance of all corrections, 0 to 1. */
   share: number;
-  /** In words: one standard deviation of it, and what it does to predictions. */
+  /** In words: one standard deviation of it, and its effect on predictions. */
   words: string;
 };
 
 /** The error that the corners of a picture share: standard deviations of each component. */
 export type CommonEntry = {
-  /** What it turns about. */
+  /** Point about which it turns. */
   about: Centre;
   /**
-   * By how many times more than by their own noise the corners move the pose of the board, as in the picture of another lens or board; 1
-   * where it is absent.
+   * Ratio by which the corners move the pose of the board more than their own noise does, for a picture of another lens or board; 1 if
+   * absent.
    */
   corners?: number;
   /** Shift, millimetres. */
@@ -794,60 +784,60 @@ export type CommonEntry = {
 };
 
 /**
- * How far the actual robot's tip is from where the nominal one has it, over the sampled workspace; and the corrections of the joints that
- * mend it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), over every
- * third configuration, as if both had been taught on it: what is displaced is displaced by the joints. The actual robot is the corrected
- * model, if there is one.
+ * Distance of the actual robot's tip from the nominal one over the sampled workspace, and the joint corrections that remove it. Tool and
+ * base of the nominal robot are fitted to the actual one over every third configuration, as if both had been taught on it. The base is
+ * fitted only if the device's frame was unknown. The remaining displacement is that of the joints. The actual robot is the corrected model,
+ * if there is one.
  */
 export type CompensationEntry = {
   /** Joint whose axis the map is about; null if that is the base's z axis. */
   about?: string | null;
-  /** Configurations whose corrected readings are beyond a joint's limits. */
+  /** Number of configurations whose corrected readings are beyond a joint's limits. */
   beyond_limits: number;
   /** Side of the map's cells, metres. */
   cell_m: number;
-  /** Parts of the workspace where the sample has configurations, by height and then by distance from the axis. */
+  /** Parts of the workspace that contain configurations of the sample, by height and then by distance from the axis. */
   cells: WorkspaceCellEntry[];
   /** Number of configurations. */
   configurations: number;
-  /** Corrections of each reading that moves the tip; none of an arm with fewer than six, which cannot mend every displacement. */
+  /** Corrections of each reading that moves the tip; empty for an arm with fewer than six, which cannot correct every displacement. */
   joints: ReadingChangeEntry[];
-  /** Configurations from which no small correction leads to the pose, since a singularity is near: another branch is, or none. */
+  /** Number of configurations from which no small correction leads to the pose, near a singularity: only another branch reaches it, or none. */
   not_correctable: number;
   /** Distances, millimetres. */
   position_mm: SpreadEntry;
   /** Angles, degrees. */
   rotation_deg: SpreadEntry;
-  /** Configurations whose tip is displaced by no more than is expected of the calibration itself: there is nothing to mend. */
+  /** Number of configurations whose tip is displaced by no more than the expected error of the calibration: they need no correction. */
   within_expected_error: number;
 };
 
 /**
- * How the readings of a controller make those of the model, `reading = Σ factor · counted + offset`: as where the third axis counts from
- * the level. Kept in `calibration.json` where they are not the same one by one.
+ * Relation of a controller's readings to those of the model, `reading = Σ factor · counted + offset`. An example is a third axis that
+ * counts from the horizontal. It is kept in `calibration.json` if they are not equal one by one.
  */
 export type Controller = {
-  /** The readings of the model's joints, in their order. */
+  /** Readings of the model's joints, in their order. */
   readings: ControllerReading[];
-  /** From where the third axis counts, where that was stated; absent where it was not. */
+  /** Reference of the third axis, if it was stated; absent otherwise. */
   third_axis?: ThirdAxisWord | null;
 };
 
 /** A column of the controller's readings. */
 export type ControllerColumn = {
-  /** What it is multiplied with. */
+  /** Factor. */
   factor: number;
   /** Unit of its numbers in the measurement files. */
   unit: string;
 };
 
-/** How a reading of the model is made. */
+/** Composition of a reading of the model. */
 export type ControllerReading = {
-  /** Columns of the measurement files that were summed; none for a constant. */
+  /** Columns of the measurement files that were summed; empty for a constant. */
   columns: { [name: string]: ControllerColumn };
-  /** What is added, radians or metres. */
+  /** Offset, radians or metres. */
   offset?: number;
-  /** Its name. */
+  /** Name. */
   reading: string;
 };
 
@@ -856,26 +846,26 @@ export type ControllerReading = {
  * model.
  */
 export type CorrectedEntry = {
-  /** What each group of terms does at each joint, the one that moves the target most first. */
+  /** Effect of each group of terms at each joint, the joint that moves the target most first. */
   effects?: EffectEntry[];
-  /** Effects that the measurements do not tell apart, a sentence each. */
+  /** Effects that the measurements cannot distinguish, a sentence each. */
   indistinguishable?: string[];
   /** Instruments on the robot. */
   instruments?: { [name: string]: InstrumentEntry };
   /** Error of each joint over its sampled range, before and after. */
   joint_errors?: JointErrorsEntry[];
-  /** The joints from base to tip: those of the robot, and behind each its gives. */
+  /** The joints from base to tip: those of the robot, each followed by its compliant joints. */
   joints: JointEntry[];
   /**
-   * Error of positions in cross-validation, millimetres (RMS): that of geometry alone times the share that terms leave; absent if sizes
-   * were given.
+   * Error of positions in cross-validation, millimetres (RMS): that of geometry alone times the share that remains with terms. Absent if
+   * the sizes were stated.
    */
   left_out_position_mm?: number | null;
   /** Frame of the measuring device. */
   measurement_frame: FrameEntry;
-  /** Standard deviation of each component of the noise, millimetres or degrees, as the fit of screws and terms shows it. */
+  /** Standard deviation of each component of the noise, millimetres or degrees, as estimated by the fit of screws and terms. */
   noise: MeasuredOfNumber;
-  /** Why these sizes. */
+  /** Reason for these sizes. */
   reason: SizesReason;
   /** The corrected robot's frames, and the weights that it carries. */
   robot: RobotEntry;
@@ -887,7 +877,7 @@ export type CorrectedEntry = {
   targets: { [name: string]: TargetEntry };
   /** Pose of the tip in the last joint's frame. */
   tool: PoseEntry;
-  /** Sizes that cross-validation tried; none if they were given. */
+  /** Sizes that cross-validation tried; empty if the sizes were stated. */
   tried?: TriedEntry[];
   /** Expected errors of predictions; null without more residuals than the measurements determine unknowns. */
   uncertainty?: UncertaintyEntry | null;
@@ -906,15 +896,15 @@ export type CorrectionEntry = {
   joint: string;
   /** Root mean square position error with this screw alone nominal, millimetres. */
   left_nominal_rms_mm: number;
-  /** The same of the axis' place; absent of a joint that slides. */
+  /** Share of the measurements in the information on the axis' position; absent for a joint that slides. */
   shift_from_data?: number | null;
   /** Standard deviations of `axis` (root mean square); null where it is not determined. */
   sigma: AxisEntry;
   /** `sigma` if the axes of all other joints were known; absent where the axis was held. */
   sigma_alone?: AxisEntry | null;
-  /** Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position. */
+  /** Reason for suspicion of the joint: a correction beyond those of the others, or residuals that follow its position. */
   suspicious?: string | null;
-  /** The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance. */
+  /** Share of the measurements in the information on the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance. */
   tilt_from_data?: number | null;
 };
 
@@ -934,7 +924,7 @@ export type CorrelationsEntry = {
   largest: number[][];
   /** The strongest of these, at most 20. */
   pairs: CorrelatedEntry[];
-  /** Number of pairs with a correlation of 0.95 and more, either way. */
+  /** Number of pairs with a correlation of 0.95 or more, of either sign. */
   strong: number;
 };
 
@@ -942,16 +932,13 @@ export type CorrelationsEntry = {
 export type CrossValidationEntry = {
   /** The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it. */
   blocked: LeftOutEntry[];
-  /**
-   * Those of their rows with a joint beyond the range of the rows by which they were predicted, by more than a tenth of it. Absent if there
-   * are none.
-   */
+  /** Errors of the rows with a joint beyond the range of the rows that predicted them, by more than a tenth of it. Absent if there are none. */
   outside?: LeftOutEntry | null;
   /** Random folds, all together. */
   random: LeftOutEntry;
 };
 
-/** What measurements say of a limit. */
+/** Decision on a limit by measurements. */
 export type Decision = "pass" | "not_shown" | "fail";
 
 /** A mistake in the input. */
@@ -969,25 +956,25 @@ export type DiagnosisKind = "joint_unit" | "position_unit" | "joint_sign" | "joi
 
 /** Unknowns that the measurements do not determine, or only weakly. */
 export type Direction = {
-  /** Its cause. */
+  /** Cause. */
   cause?: Cause;
   /** Description. */
   description: string;
   /** Number of independent directions. */
   directions?: number;
-  /** The joints concerned. */
+  /** Joints concerned. */
   joints: string[];
 };
 
-/** What one group of terms does at one joint. */
+/** Effect of one group of terms at one joint. */
 export type EffectEntry = {
   /** Largest deviation in the fitted rows, milliradians, of shift and runout millimetres; of a ratio the change each radian. */
   amplitude: number;
-  /** Share of its prior variance that the measurements took away, 0 to 1. */
+  /** Share of its prior variance that the measurements removed, 0 to 1. */
   determined_share: number;
   /** Distance by which it moves the target in the fitted rows, but for the mean of all (root mean square), millimetres. */
   effect_mm: number;
-  /** Whether it is more than chance and the prior make. */
+  /** True if it is larger than chance and the prior explain. */
   found: boolean;
   /** The group. */
   group: string;
@@ -999,33 +986,33 @@ export type EffectEntry = {
   words: string;
 };
 
-/** Something that happened during a session. */
+/** An event during a session. */
 export type Event = {
-  /** The same after it; absent where it was not tried. */
+  /** The same error after the repair; absent if none was tried. */
   error_after_mm?: number | null;
   /** Error of the delivered model in cross-validation (RMS, millimetres, or degrees without positions) before the repair. */
   error_before_mm?: number | null;
-  /** Where that is: its file and line. */
+  /** File and line of this measurement. */
   from: string;
-  /** Number of the first measurement after it, from 1; of wrong configurations the first of them. */
+  /** Number of the first measurement after it, from 1; for wrong configurations the first of them. */
   from_row: number;
-  /** What it is. */
+  /** Kind of the event. */
   kind: EventKind;
-  /** What was moved: the instrument, the target, the joint; empty without a name. */
+  /** Moved object: the instrument, the target, the joint; empty without a name. */
   name: string;
-  /** Errors of some rows in their order, by the models before and after the repair, millimetres or degrees; not of what was not repaired. */
+  /** Errors of some rows in their order, by the models before and after the repair, millimetres or degrees; empty without a repair. */
   residuals?: Array<[number, number, number]>;
   /** Numbers of the measurements of wrong configurations. */
   rows?: number[];
-  /** How far it turned, degrees. */
+  /** Angle, degrees. */
   size_deg?: number | null;
-  /** How far, millimetres; of a drift from the first measurement to the last. */
+  /** Distance, millimetres; for a drift from the first measurement to the last. */
   size_mm?: number | null;
-  /** What it is taken as, or what to do, a sentence. */
+  /** Interpretation in the repair, or advice, a sentence. */
   statement: string;
 };
 
-/** What happened. The words do not change between versions. */
+/** Kind of an event. The words do not change between versions. */
 export type EventKind = "device" | "target" | "nest" | "zero" | "drift" | "rows";
 
 /** Expected errors of predicted positions, millimetres. */
@@ -1038,7 +1025,7 @@ export type ExpectedEntry = {
   worst_bound95_position_mm: number;
 };
 
-/** Something else that is read in each configuration. */
+/** Another reading of each configuration. */
 export type FactorReading = {
   /** Name of its column. */
   name: string;
@@ -1046,19 +1033,19 @@ export type FactorReading = {
   reference: number;
 };
 
-/** A number of a camera or of a board that was found. */
+/** An estimated number of a camera or of a board. */
 export type FoundEntry = {
-  /** Standard deviation of what was found, by the corners and what was known before. */
+  /** Standard deviation of the estimate, by the corners and the prior. */
   deviation: number;
-  /** As it was found. */
+  /** Estimated value. */
   found: number;
-  /** As it was given. */
+  /** Initial value. */
   given: number;
-  /** What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`. */
+  /** Name: `lens`, `board` or `markers`, then a name, and the number's own, such as `lens.left.fx`. */
   name: string;
-  /** Standard deviation of what was known before. */
+  /** Standard deviation of the prior. */
   prior: number;
-  /** Its unit, `px` or `mm`; empty of shares and of coefficients. */
+  /** Unit, `px` or `mm`; empty for shares and for coefficients. */
   unit: string;
 };
 
@@ -1066,37 +1053,37 @@ export type FoundEntry = {
 export type FrameEntry = {
   /** Pose of the device in the base. */
   base_from_device: PoseEntry;
-  /** Whether the frame was unknown or the base. */
+  /** Knowledge of the frame: unknown, or equal to the base. */
   known: FrameWord;
 };
 
 /** Knowledge of the device frame. */
 export type FrameWord = "unknown" | "base";
 
-/** Whether the delivered model predicts better than the nominal model: anywhere inside the sampled range, or on rows that judge it. */
+/** Decision whether the delivered model predicts better than the nominal model: anywhere inside the sampled range, or on rows that judge it. */
 export type Gain = "clear" | "unclear" | "loss";
 
-/** Weights that a robot carries. How heavy they are is in the coefficients. */
+/** Weights that a robot carries. Their masses are contained in the coefficients. */
 export type GravityEntry = {
-  /** Where weights are pulled, base frame. */
+  /** Direction of gravity, base frame. */
   direction: [number, number, number];
   /**
-   * Longest lever of each joint, by which moments about it are divided: the path from joint to joint to the farthest weight. It follows
-   * from the other entries; 0 of a joint that carries nothing.
+   * Longest lever arm of each joint, the divisor of moments about it: the path from joint to joint to the farthest weight. It follows from
+   * the other entries; 0 for a joint that carries nothing.
    */
   joint_levers_m?: number[];
   /**
-   * Of each joint, the masses that it carries times their longest levers, by which the moment of all masses is divided; of a joint that
-   * slides the masses alone. It follows from the other entries; 0 of a joint that carries nothing.
+   * Sum over the masses that a joint carries, each times its longest lever arm; for a joint that slides, the masses alone. It divides the
+   * moment of all masses. It follows from the other entries; 0 for a joint that carries nothing.
    */
   joint_mass_levers_kg_m?: number[];
-  /** Origin of each joint of the nominal model at zero joint values, about which moments are counted, base frame. */
+  /** Origin of each joint of the nominal model at zero joint values, the reference of its moments, base frame. */
   joint_origins_m: Array<[number, number, number]>;
   /** The weights; the term `sag1` is of the first. */
   weights: WeightEntry[];
 };
 
-/** Which unknowns the measurements determine. */
+/** Determination of the unknowns by the measurements. */
 export type IdentifiabilityEntry = {
   /** Condition number over these directions; null if there are none. */
   condition?: number | null;
@@ -1118,24 +1105,24 @@ export type IdentifiabilityEntry = {
 
 /** A cell of an image: corners in pictures that are not suspected, fitted or held out. */
 export type ImageCellEntry = {
-  /** The same of the model that is delivered. */
+  /** The same by the delivered model. */
   after_px?: number | null;
   /** Column and row, from 0. */
   at: [number, number];
-  /** Their root mean square distance from where the registered model sees them, pixels; null without any. */
+  /** Their root mean square distance from their pixels by the registered model; null without corners. */
   before_px?: number | null;
   /** Number of corners. */
   corners: number;
   /** Mean of measured minus predicted pixel by that model, along u and v. */
   mean_px?: [number, number] | null;
   /**
-   * Root mean square distance by which a point before the middle of the cell is predicted off, by the covariance of robot, camera and
+   * Root mean square uncertainty of the predicted pixel of a point before the middle of the cell, by the covariance of robot, camera and
    * board; null beyond the lens.
    */
   predicted_px?: number | null;
 };
 
-/** Errors of corners over the image of a camera, and how well the calibration predicts pixels there. */
+/** Errors of corners over the image of a camera, and the uncertainty of predicted pixels there. */
 export type ImageEntry = {
   /** The camera. */
   camera: string;
@@ -1147,7 +1134,7 @@ export type ImageEntry = {
   distance_mm: number;
 };
 
-/** Root mean square error of the nominal model, registered, over that of another, on the same rows. */
+/** Ratio of the root mean square error of the nominal model, registered, to that of another model on the same rows. */
 export type Improvement = {
   /** The factor. */
   factor: number;
@@ -1159,25 +1146,25 @@ export type Improvement = {
 
 /** Improvement of each quantity by the models that are fitted. */
 export type Improvements = {
-  /** Of the calibrated model. */
+  /** Improvement by the calibrated model. */
   calibrated: MeasuredOfImprovement;
-  /** Of the corrected model; absent if there is none. */
+  /** Improvement by the corrected model; absent if there is none. */
   corrected?: MeasuredOfImprovement | null;
 };
 
-/** A file as it was read. */
+/** A file that was read. */
 export type InputEntry = {
   /** Its name, as in `measurements`. */
   file: string;
-  /** What the file is; absent of a table in our form. */
+  /** Form of the file; absent for a table in our form. */
   form?: string | null;
-  /** Lost beams: measurements without a position, which were left out. */
+  /** Number of beam breaks: measurements without a position, which were left out. */
   lost?: number;
-  /** Its rows, those of lost beams included. */
+  /** Number of rows of the file, including beam breaks. */
   rows: number;
-  /** What was taken of it, a number for each quantity: `joint readings`, `points`, `poses` and other measurements. */
+  /** Number of items that were taken, by quantity: `joint readings`, `points`, `poses` and other measurements. */
   taken: { [name: string]: number };
-  /** What was understood of one in another form, in a few words: sheet, frame, body, topic, unit. */
+  /** Interpretation of a file in another form, in a few words: sheet, frame, body, topic, unit. */
   understood?: string | null;
   /** Units of its columns. */
   units?: string[];
@@ -1187,9 +1174,9 @@ export type InputEntry = {
 export type Inputs = {
   /** The command that reproduces the calibration; null if it was not made by the program. */
   command?: string | null;
-  /** What each measurement file is and what was taken of it; one with joint readings and measurements has two entries. */
+  /** Kind of each measurement file and its used rows; one with joint readings and measurements has two entries. */
   files?: InputEntry[];
-  /** How files of joint readings and of measurements were joined; absent if one file has both. */
+  /** Joins of files of joint readings with files of measurements; absent if one file has both. */
   joins?: JoinEntry[];
   /** The measurement files, as named by the user. */
   measurements: string[];
@@ -1197,13 +1184,13 @@ export type Inputs = {
   model: string;
   /** SHA-256 of each file by its name; of input that is no regular file, such as a pipe, only for measurements. */
   sha256?: { [name: string]: string };
-  /** The URDF that was calibrated; absent if the model was none. */
+  /** The URDF that was calibrated; absent if the model was no URDF. */
   urdf?: OriginalUrdf | null;
 };
 
 /** An instrument on the robot. */
 export type InstrumentEntry = {
-  /** Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base. */
+  /** Body that carries it. Its pose is in the frame of the joint that moves the body, or in the base. */
   on: BodyEntry;
   /** Position, metres. */
   position_m: [number, number, number];
@@ -1211,51 +1198,51 @@ export type InstrumentEntry = {
   quaternion_xyzw: [number, number, number, number];
 };
 
-/** How the rows of a file of joint readings and of one of measurements find each other. */
+/** Method by which the rows of a file of joint readings and of one of measurements are matched. */
 export type Join = "name" | "rows" | "time" | "motion";
 
-/** How a file of measurements was joined with one of joint readings. */
+/** Join of a file of measurements with one of joint readings. */
 export type JoinEntry = {
-  /** How rows found each other. */
+  /** Method by which rows were matched. */
   join: Join;
-  /** Rows of joint readings, or stands of their stream. */
+  /** Number of rows of joint readings, or of static intervals of their stream. */
   joint_rows: number;
   /** The file of joint readings. */
   joints: string;
   /** Time of the measurements less that of the joint readings, seconds; absent without clocks. */
   lag_s?: number | null;
-  /** The target's motion, of a stream of measurements, or of single points with times. */
+  /** The target's motion, for a stream of measurements, or for single points with times. */
   measured_motion?: MotionEntry | null;
-  /** Configurations in which was measured, or stands of the stream of measurements. */
+  /** Number of measured configurations, or of static intervals of the stream of measurements. */
   measured_rows: number;
   /** The file of measurements. */
   measurements: string;
-  /** By how much the nominal robot misses the pairs (median), millimetres; absent where they are too few to say. */
+  /** Median error of the nominal robot at the pairs, millimetres; absent if there are too few pairs. */
   missed_mm?: number | null;
   /** Number of pairs. */
   paired: number;
   /** Pairs: number of the row of joint readings, and of the measured configuration, each from 1; at most 2,000. */
   pairs: Array<[number, number]>;
-  /** Joint readings at which more than once was measured. */
+  /** Joint readings with more than one measurement. */
   repeated?: RowEntry[];
-  /** The robot's motion, of a stream of joint readings. */
+  /** The robot's motion, for a stream of joint readings. */
   robot_motion?: MotionEntry | null;
-  /** Joint readings at which nothing was measured; at most 1,000, as of the next two. */
+  /** Joint readings without a measurement; at most 1,000, as in the next two lists. */
   unmeasured?: RowEntry[];
-  /** Measured configurations that were left out: they have no joint readings. */
+  /** Measured configurations that were left out, because they have no joint readings. */
   unread?: RowEntry[];
 };
 
 /**
- * How a joint differs from the nominal one, in parts: a joint offset, and the tilt and shift of the axis that offsets and base do not
+ * Difference of a joint from the nominal one, in parts: a joint offset, and the tilt and shift of the axis that offsets and base do not
  * explain. Directions are those of the base frame with all joints at zero.
  */
 export type JointChangeEntry = {
   /** The point of the axis for which the shift is stated: the nearest to the joint's origin, metres. */
   at_m: [number, number, number];
-  /** What is to be added to the value of a joint that turns, degrees; null where base or tool can take its place. */
+  /** Addition to the value of a joint that turns, degrees; null where base or tool can take its place. */
   offset_deg?: number | null;
-  /** The same of a joint that slides, millimetres. */
+  /** Addition to the value of a joint that slides, millimetres. */
   offset_mm?: number | null;
   /** Shift of the axis across itself, millimetres; null of a joint that slides. */
   shift_mm?: [number, number, number] | null;
@@ -1274,8 +1261,8 @@ export type JointChangeEntry = {
 /** Sampled and allowed values of a joint (radians; metres of a prismatic joint). */
 export type JointCoverage = {
   /**
-   * Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
-   * count as sampled.
+   * Share of the sampled range, at its ends, that at most a fiftieth of the rows reach. A gap of more than 15 % of the range separates it
+   * from the rest. It does not count as sampled.
    */
   isolated_share?: number;
   /** The joint. */
@@ -1294,7 +1281,7 @@ export type JointCoverage = {
 export type JointEntry = {
   /** Calibrated frame of the joint and of the link that it moves, at zero. */
   base_from_joint: PoseEntry;
-  /** The joint whose compliance this is: it turns by its terms alone, whose functions are of that joint. */
+  /** The joint whose compliance this joint is. It turns by its terms alone, whose functions are of that joint. */
   compliance_of?: string | null;
   /** Kind. */
   kind: KindWord;
@@ -1304,9 +1291,9 @@ export type JointEntry = {
   name: string;
   /** Screw of the nominal model. */
   nominal_screw: ScrewEntry;
-  /** The same of the nominal model. */
+  /** Coefficients of the nominal model's terms. */
   nominal_terms?: { [name: string]: number };
-  /** Body on which the joint stands, if that is not the link of the joint before. */
+  /** Body that carries the joint, if that is not the link of the joint before. */
   on?: BodyEntry | null;
   /** The joint's value as a function of a reading. */
   reading: ReadingEntry;
@@ -1318,11 +1305,11 @@ export type JointEntry = {
 
 /** A part of a joint's range. Errors in milliradians, of a joint that slides in millimetres. */
 export type JointErrorEntry = {
-  /** By the calibrated model. */
+  /** Error of the calibrated model. */
   calibrated: number;
-  /** By the corrected model. */
+  /** Error of the corrected model. */
   corrected: number;
-  /** From, radians or metres. */
+  /** Lower end, radians or metres. */
   from: number;
   /** Number of rows. */
   rows: number;
@@ -1330,7 +1317,7 @@ export type JointErrorEntry = {
   sigma: number;
   /** Mean deviation by the joint's own terms. */
   terms: number;
-  /** To. */
+  /** Upper end. */
   to: number;
 };
 
@@ -1338,7 +1325,7 @@ export type JointErrorEntry = {
 export type JointErrorsEntry = {
   /** The joint. */
   joint: string;
-  /** Parts of its range with rows enough. */
+  /** Parts of its range with enough rows. */
   parts: JointErrorEntry[];
 };
 
@@ -1363,18 +1350,18 @@ export type LeftOutEntry = {
   rows: number;
 };
 
-/** Level of a verdict: what the delivered model may be used for. */
+/** Level of a verdict: the permitted use of the delivered model. */
 export type Level = "do_not_use" | "located" | "measured_configurations" | "inside_sampled_range" | "good";
 
 /**
- * Loss of robust estimation, a function of the length of a row's whitened residual. Its constant gives 95 % efficiency under normal noise
- * of that many components.
+ * Loss of robust estimation, a function of the length of a row's whitened residual. Its constant leads to 95 % efficiency under normal
+ * noise of that many components.
  */
 export type Loss = "huber" | "cauchy" | "tukey";
 
 /** A mass of the model. */
 export type MassEntry = {
-  /** How heavy it is, kg. */
+  /** Mass, kg. */
   mass_kg: number;
   /** Its body. */
   on: BodyEntry;
@@ -1382,7 +1369,7 @@ export type MassEntry = {
   place_m: [number, number, number];
 };
 
-/** What was measured of a target. */
+/** Measured quantities of a target. */
 export type MeasuredEntry = "pose" | "position" | "nothing";
 
 /** Of each quantity that was measured; null of a rotation that was not. */
@@ -1423,12 +1410,13 @@ export type ModelAccuracy = {
   contact_mm?: Statistic;
   distance_mm?: Statistic;
   height_mm?: Statistic;
-  /** Of the corners of all pictures; absent if there are none. */
+  /** Errors of the corners of all pictures; absent if there are none. */
   pixels?: PixelAccuracy | null;
   position_mm?: Statistic;
   /**
-   * Of all rows that a device without a frame of its own measured, millimetres, whatever their quantity: what their constraint leaves, as
-   * the error of a distance, a ball from the middle of its socket, a height over its plane. Absent if there are none.
+   * Residuals of all rows measured by a device without a frame of its own, millimetres, for any quantity: the remaining violation of their
+   * constraint, as the error of a distance, the distance of a ball from the middle of its socket, or a height over its plane. Absent if
+   * there are none.
    */
   residual_mm?: Statistic | null;
   rotation_deg?: Statistic | null;
@@ -1441,19 +1429,19 @@ export type MotionEntry = {
   begin_s: number;
   /** Time of the last row, seconds. */
   end_s: number;
-  /** Begin and end of the times without a row, as of lost frames, seconds; the longest 1,000. */
+  /** Begin and end of the times without a row, such as lost frames, seconds; the longest 1,000. */
   gaps_s?: Array<[number, number]>;
-  /** Its rows. */
+  /** Rows. */
   rows: number;
-  /** Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null where no row is near. */
+  /** Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null if no row is near. */
   speeds_mm_s: Array<number | null>;
-  /** Begin and end of each stand, seconds; both the same of a single point. */
+  /** Begin and end of each static interval, seconds; both are equal for a single point. */
   stands_s: Array<[number, number]>;
   /** Seconds from one speed to the next; zero without speeds. */
   step_s: number;
 };
 
-/** Noise by which residuals were weighted where a row stated none. */
+/** Noise by which residuals were weighted if a row stated none. */
 export type NoiseEntry = {
   /** Standard deviation of each component of each measured quantity, millimetres or degrees. */
   sigma: MeasuredOfNumber;
@@ -1465,8 +1453,8 @@ export type NoiseEntry = {
 export type NoiseSource = "given" | "rows" | "estimated" | "exact";
 
 /**
- * The indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns: theory.md
- * §7 (36b). Larger is better. `None` where a singular value is zero but for rounding.
+ * Indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns: theory.md §7
+ * (36b). Larger is better. `None` where a singular value is zero but for rounding.
  */
 export type Observability = {
   /** `(s₁ s₂ … sₙ)^(1/n) / √m`, 1/m (metre): the geometric mean of the singular values, by the number m of configurations. */
@@ -1475,7 +1463,7 @@ export type Observability = {
   o2?: number | null;
   /** `sₙ`, 1/m (metre): the inverse of the largest standard deviation. */
   o3?: number | null;
-  /** `sₙ² / s₁`, 1/m (metre): how noise is amplified. */
+  /** `sₙ² / s₁`, 1/m (metre): the noise amplification index. */
   o4?: number | null;
   /** `1 / Σ 1/sₖ`, 1/m (metre). */
   o5?: number | null;
@@ -1485,15 +1473,15 @@ export type Observability = {
 export type OffsetEntry = {
   /** The joint. */
   joint: string;
-  /** Of a revolute joint, degrees. */
+  /** Offset of a revolute joint, degrees. */
   offset_deg?: number | null;
-  /** Of a prismatic joint, millimetres. */
+  /** Offset of a prismatic joint, millimetres. */
   offset_mm?: number | null;
 };
 
 /**
- * The URDF that was calibrated, with what of it was: every form of the result that is a URDF is this text with other numbers, so that
- * meshes, comments and links outside the chain stay.
+ * The URDF that was calibrated, with the selection of its chain. Every URDF form of the result is this text with other numbers, so that
+ * meshes, comments and links outside the chain remain.
  */
 export type OriginalUrdf = {
   /** First link of the chain. */
@@ -1515,8 +1503,8 @@ export type OutlierEntry = {
   /** Its file, as named by the user. */
   file: string;
   /**
-   * Distance from the position that the calibrated model predicts, angle from the orientation, and so on of each measured quantity,
-   * millimetres or degrees.
+   * Residual of each measured quantity against the calibrated model's prediction, millimetres or degrees: distance of positions, angle of
+   * orientations, and so on.
    */
   residual: MeasuredOfNumber;
   /** Its line in that file, from 1. */
@@ -1525,39 +1513,55 @@ export type OutlierEntry = {
   set: OutlierSet;
   /** Studentised residual: length over its own standard deviation. */
   studentized: number;
-  /** Weight in the fit, 0 to 1; of a held-out row the weight that it would have had. */
+  /** Weight in the fit, 0 to 1; for a held-out row the weight that it would have had. */
   weight: number;
 };
 
 /** Set of a suspected row. */
 export type OutlierSet = "fit" | "held_out";
 
-/** The pictures of the session: their noise, and the lenses that they were read with. */
+/** A value for the training rows and one for the held-out rows. */
+export type OutliersBySet = {
+  /** Value of the held-out rows. */
+  held_out: number;
+  /** Value of the training rows. */
+  training: number;
+};
+
+/** A value for the training rows and one for the held-out rows. */
+export type OutliersBySet2 = {
+  /** Value of the held-out rows. */
+  held_out?: SetAccuracy | null;
+  /** Value of the training rows. */
+  training?: SetAccuracy | null;
+};
+
+/** The pictures of the session: their noise, and the lenses by which they were read. */
 export type PicturesEntry = {
   /** The boards. */
   boards?: BoardEntry[];
   /** The cameras. */
   cameras: CameraEntry[];
-  /** What the corners of a picture share: the error of the configuration. */
+  /** Error that all corners of a picture share: the error of the configuration. */
   common: CommonEntry;
   /** Number of corners in them. */
   corners: number;
   /** Number of pictures. */
   count: number;
   /**
-   * Numbers of cameras and boards that were found with the robot (`--free lens`, `board`, `markers`), with what is above; absent if all
-   * were given.
+   * Numbers of cameras and boards that were fitted together with the robot (`--free lens`, `board`, `markers`) and replace those above;
+   * absent if all were held.
    */
   found?: FoundEntry[];
   /** Errors of corners over the image of each camera whose picture has a known size. */
   images?: ImageEntry[];
   /** Standard deviation of each coordinate of a corner that states none, pixels. */
   sigma_px: number;
-  /** Those that lost their weight, since they do not fit the others of their picture. */
+  /** Corners that lost their weight, since they do not fit the others of their picture. */
   without_weight: number;
 };
 
-/** Distances of corners from where a model sees them: in the picture, and at the board, square to the ray. */
+/** Distances of corners from their prediction by a model: in the picture, and at the board, perpendicular to the ray. */
 export type PixelAccuracy = {
   /** Number of corners. */
   corners: number;
@@ -1571,29 +1575,29 @@ export type PixelAccuracy = {
   median_px: number;
   /** Number of pictures. */
   pictures: number;
-  /** Root mean square over the corners at the board, square to the ray, millimetres. */
+  /** Root mean square over the corners at the board, perpendicular to the ray, millimetres. */
   rms_mm: number;
   /** Root mean square over the corners, pixels. */
   rms_px: number;
-  /** Corners that the model has behind the camera or beyond its lens; they are in no figure. */
+  /** Corners behind the camera or beyond its lens by the model; no statistic includes them. */
   unseen?: number;
 };
 
 /** A point of a body. */
 export type PointEntry = {
-  /** Its name. */
+  /** Name. */
   name: string;
-  /** Its place in the frame of the body, millimetres. */
+  /** Position in the frame of the body, millimetres. */
   place_mm: [number, number, number];
 };
 
 /** Accuracy of each model in a pose, millimetres or degrees. */
 export type PoseAccuracy = {
-  /** Of the calibrated model. */
+  /** Accuracy of the calibrated model. */
   calibrated: MeasuredOfNumber;
-  /** Of the nominal model. */
+  /** Accuracy of the nominal model. */
   nominal: MeasuredOfNumber;
-  /** Of the registered model. */
+  /** Accuracy of the registered model. */
   registered: MeasuredOfNumber;
 };
 
@@ -1607,17 +1611,17 @@ export type PoseEntry = {
 
 /** A part of a joint's range with the expected error there. */
 export type RangeEntry = {
-  /** From, radians or metres. */
+  /** Lower end, radians or metres. */
   from: number;
   /** The joint. */
   joint: string;
   /** Root mean square distance, millimetres, with the other joints anywhere in their ranges. */
   sigma_position_mm: number;
-  /** To. */
+  /** Upper end. */
   to: number;
 };
 
-/** By how much a reading is corrected. */
+/** Correction of a reading. */
 export type ReadingChangeEntry = {
   /** Largest. */
   max: number;
@@ -1639,35 +1643,35 @@ export type ReadingEntry = {
   offset: number;
 };
 
-/** A joint that was calibrated anew; all else is as the calibration before had it. */
+/** A joint that was recalibrated; everything else is as in the earlier calibration. */
 export type RecalibratedEntry = {
-  /** The calibration before. */
+  /** The earlier calibration. */
   calibration: string;
   /** The joint. */
   joint: string;
   /** The measurement files. */
   measurements: string[];
-  /** By what motion of the base's axes the axis moved, and of a zero what follows the joint: metres and radians, linear part first. */
+  /** Motion of the axis in the base's axes, and for a zero of all that follows the joint: metres and radians, linear part first. */
   motion: [number, number, number, number, number, number];
-  /** What of it. */
+  /** Its recalibrated part. */
   part: RepairedPart;
-  /** The latter. */
+  /** Number of measurements that repeat configurations of earlier ones. */
   repeated: number;
-  /** Number of measurements, and how many of them repeat configurations of earlier ones. */
+  /** Number of measurements. */
   rows: number;
   /** SHA-256 of each, by name. */
   sha256: { [name: string]: string };
   /** Standard deviation of that. */
   sigma: number;
-  /** What was added to its zero, degrees; of a joint that slides millimetres. Of an axis its turn, degrees. */
+  /** Change of its zero, degrees; for a joint that slides, millimetres. For an axis its turn, degrees. */
   size: number;
 };
 
-/** What is stated of a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from it. */
+/** Statements about a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from them. */
 export type Record = {
   /** Number of the report or certificate. */
   certificate?: string | null;
-  /** For whom. */
+  /** Customer of the calibration. */
   customer?: string | null;
   /** Day of the measurements, `YYYY-MM-DD`. */
   date?: string | null;
@@ -1675,17 +1679,17 @@ export type Record = {
   instrument?: string | null;
   /** Day of the instrument's own calibration, `YYYY-MM-DD`. */
   instrument_calibrated?: string | null;
-  /** Who calibrated: name and address. */
+  /** Name and address of the calibrating laboratory. */
   laboratory?: string | null;
   /** Anything else. */
   note?: string | null;
-  /** Who measured. */
+  /** Person who measured. */
   operator?: string | null;
   /** The load that the robot carried, with its unit. */
   payload?: string | null;
-  /** Where the robot stood. */
+  /** Location of the robot. */
   place?: string | null;
-  /** The robot as its owner calls it: maker and type. */
+  /** The robot's name used by its owner: maker and type. */
   robot?: string | null;
   /** Its serial number. */
   serial?: string | null;
@@ -1701,10 +1705,10 @@ export type Record = {
   warm_up?: string | null;
 };
 
-/** What of a joint was calibrated anew. */
+/** The part of a joint that was recalibrated. */
 export type RepairedPart = "zero" | "axis";
 
-/** Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs. */
+/** Pose accuracy and repeatability of positions, after ISO 9283; for poses that were measured by other quantities those of the latter. */
 export type RepeatabilityEntry = {
   /** Distance from the prediction of each model to the mean measured position. */
   accuracy: PoseAccuracy;
@@ -1740,7 +1744,7 @@ export type RobotEntry = {
   base_from_tip_at_zero: PoseEntry;
   /** Name of the base frame. */
   base_link: string;
-  /** What else is read in each configuration and terms depend on; the term `factor1` is of the first. */
+  /** Other values that are read in each configuration and that terms depend on; the term `factor1` is of the first. */
   factors?: FactorReading[];
   /** Weights that the robot carries, if its joints sag. */
   gravity?: GravityEntry | null;
@@ -1748,7 +1752,7 @@ export type RobotEntry = {
   masses?: MassEntry[];
   /** Name. */
   name: string;
-  /** The same of the nominal model. */
+  /** Pose of the tip in the base with all joint values zero, by the nominal model. */
   nominal_base_from_tip_at_zero: PoseEntry;
   /** Name of the tip frame. */
   tip_link: string;
@@ -1761,16 +1765,16 @@ export type RobustEntry = {
   /** Loss of a robust fit; null: least squares. */
   loss?: Loss | null;
   /** Numbers of suspected rows. */
-  suspected: BySet;
-  /** `accuracy` without suspected rows; null of a set that has none. */
-  without_suspected: BySet2;
+  suspected: OutliersBySet;
+  /** `accuracy` without suspected rows; null for a set that has none. */
+  without_suspected: OutliersBySet2;
 };
 
 /** A row of a file. */
 export type RowEntry = {
-  /** Its line, row of a sheet or message; of a stand that of its first row. */
+  /** Its line, row of a sheet or message; that of its first row for a static interval. */
   line: number;
-  /** Its number among the rows or stands, from 1. */
+  /** Its number among the rows or static intervals, from 1. */
   number: number;
 };
 
@@ -1786,11 +1790,11 @@ export type ScrewEntry = {
 export type SetAccuracy = {
   /** Screws fitted too. */
   calibrated: ModelAccuracy;
-  /** Screws and terms of the joints fitted together; absent if no terms were asked for. */
+  /** Screws and terms of the joints fitted together; absent if no terms were requested. */
   corrected?: ModelAccuracy | null;
   /** Number of measurements. */
   count: number;
-  /** How many times smaller than the registered model's the errors of rows held out are; absent of others. */
+  /** Ratio of the registered model's errors to those of the fitted models, on held-out rows; absent for other rows. */
   improvement?: Improvements | null;
   /** The nominal model; only an unknown device frame is fitted. */
   nominal: ModelAccuracy;
@@ -1798,27 +1802,27 @@ export type SetAccuracy = {
   registered: ModelAccuracy;
 };
 
-/** Why a corrected model has terms of its sizes. */
+/** Reason for the sizes of a corrected model's terms. */
 export type SizesReason = "given" | "predict" | "no_better" | "small" | "too_few" | "undetermined" | "led_nowhere" | "worse_held_out";
 
 /** The minimisation: steps, end, convergence. */
 export type SolverEntry = {
   /** Tolerance of the prior, if cross-validation chose it. */
   chosen_tolerance?: ToleranceEntry | null;
-  /** Whether an optimum was reached. */
+  /** True if an optimum was reached. */
   converged: boolean;
   /** Parameterisation of joint errors: `adjoint`, or a formulation for comparison. */
   formulation?: string;
   /** Iterations of the full fit. */
   iterations: number;
   /**
-   * Joint offsets found: joint value minus reading, where the formulation has them. Data cannot separate them from screws; in `joints` they
-   * are part of the screws, and the readings need no correction.
+   * Fitted joint offsets: joint value minus reading, if the formulation contains them. Data cannot separate them from screws; in `joints`
+   * they are part of the screws, and the readings need no correction.
    */
   joint_offsets?: OffsetEntry[] | null;
   /** Method of the solver: `levenberg-marquardt`, or others for comparison. */
   method?: string;
-  /** Effect of the formulation on the result, if it is not the usual one. */
+  /** Effect of the formulation on the result, if it is not the default one. */
   note?: string | null;
   /** Residual of measured frames: `tool`, at the target, or another for comparison. */
   pose_residual?: string;
@@ -1845,17 +1849,17 @@ export type StationEntry = {
   /** Name of the instrument: from the column `instrument`, or the file with `--device-frames per-file`. */
   instrument?: string | null;
   /**
-   * What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it),
-   * pair (of configurations: its pose means nothing).
+   * SessionKind, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along
+   * it), pair (of configurations, without a meaningful pose).
    */
   kind?: string | null;
   /** Radius of a sphere, with that of the probe, known or found, millimetres. */
   radius_mm?: number | null;
-  /** Growth of its readings with the distance, less 1, if it is not 0. */
+  /** Scale error of its distance readings (scale less 1), if it is not 0. */
   scale?: number | null;
   /** Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument. */
   sigma?: MeasuredOfNumber | null;
-  /** Reading of its distances at its own place, millimetres, if it is not 0; of a sphere that is touched, minus its radius. */
+  /** Reading of its distances at its own position, millimetres, if it is not 0; for a sphere that is touched, minus its radius. */
   zero_mm?: number | null;
 };
 
@@ -1872,8 +1876,8 @@ export type Statistic = {
 };
 
 /**
- * A configuration in which every measured position is suspected, of two targets or more, and off by like distances: there the arm or its
- * readings are wrong, not a target.
+ * A configuration in which every measured position is suspected, of two targets or more, with residuals of similar length. There the arm or
+ * its readings are wrong, not a target.
  */
 export type SuspectedConfigurationEntry = {
   /** File of its first row. */
@@ -1892,7 +1896,7 @@ export type SuspectedConfigurationEntry = {
 
 /** A target; a point has no orientation. */
 export type TargetEntry = {
-  /** What was measured of such a target; the rest of its pose is the model's. */
+  /** The measured quantities of such a target; the rest of its pose is the model's. */
   measured?: MeasuredEntry | null;
   /** Body of a target that is not in the tip frame: its pose is in the frame of the joint that moves the body, or in the base. */
   on?: BodyEntry | null;
@@ -1902,17 +1906,17 @@ export type TargetEntry = {
   quaternion_xyzw?: [number, number, number, number] | null;
 };
 
-/** Why a minimisation ended: data, not an error string. */
+/** Reason of the end of a minimisation: data, not an error string. */
 export type Termination = "optimum" | "step_vanished" | "no_progress" | "iteration_limit" | "not_finite";
 
-/** From where a third axis counts. */
+/** Reference of a third axis. */
 export type ThirdAxisWord = "arm" | "level";
 
-/** Tolerance of the prior: how far each axis may be from nominal, standard deviations. */
+/** Tolerance of the prior: expected deviation of each axis from nominal, standard deviations. */
 export type ToleranceEntry = {
-  /** Of its direction, degrees. */
+  /** Tolerance of its direction, degrees. */
   angle_deg: number;
-  /** Of its place, millimetres. */
+  /** Tolerance of its position, millimetres. */
   length_mm: number;
 };
 
@@ -1942,11 +1946,11 @@ export type UncertaintyEntry = {
    * pure translations first.
    */
   covariance_m2: number[];
-  /** The same outside the sampled range; absent if no larger. */
+  /** Covariance outside the sampled range; absent if no larger. */
   covariance_outside_m2?: number[] | null;
   /** Degrees of freedom of the variance of each quantity's residuals; absent where their noise is stated. */
   degrees_of_freedom?: { [name: string]: number };
-  /** The same outside the sampled range; absent if no larger. */
+  /** Factor outside the sampled range; absent if no larger. */
   extrapolation?: number | null;
   /** Point of the device frame about which its unknowns turn, metres, where the frame is among them. */
   frame_about_m?: [number, number, number] | null;
@@ -1956,19 +1960,19 @@ export type UncertaintyEntry = {
   inflation: number;
   /** Correlation of residuals of consecutive rows; null if not significant. */
   lag_one_correlation?: number | null;
-  /** Metres that a radian counts in the covariance. */
+  /** Metres that one radian equals in the covariance. */
   length_m: number;
-  /** In the measured configurations. */
+  /** Expected errors in the measured configurations. */
   measured: ExpectedEntry;
-  /** Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and what else was measured. */
+  /** Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and other measured quantities. */
   model_error: MeasuredOfNumber;
   /** Measurement noise in the residuals: standard deviation of each component, millimetres or degrees. */
   noise: MeasuredOfNumber;
-  /** By parts of each joint's range. */
+  /** Expected errors by parts of each joint's range. */
   parts: RangeEntry[];
-  /** Anywhere within the limits. */
+  /** Expected errors anywhere within the limits. */
   range: ExpectedEntry;
-  /** Whether the residuals of each quantity count as the robot's or the instrument's. */
+  /** Attribution of the residuals of each quantity to the robot or to the instrument. */
   residuals: { [name: string]: Attribution };
   /**
    * Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. One that is the tip has an empty
@@ -1980,43 +1984,43 @@ export type UncertaintyEntry = {
 };
 
 /**
- * A level, and the reasons against a better one; for the best level, the reasons for it. And the expected errors of the model that is
- * delivered.
+ * A level, and the reasons against a better one; for the best level, the reasons for it. It includes the expected errors of the delivered
+ * model.
  */
 export type Verdict = {
   /** Mean of the distances that 95 % of its errors do not exceed there, millimetres. */
   bound95_mm?: number | null;
-  /** That the axes of the nominal model are confirmed, a sentence with its figures: the fitted ones are the same within their uncertainty. */
+  /** Statement that the axes of the nominal model are confirmed, with its figures: the fitted ones are the same within their uncertainty. */
   confirmed?: string | null;
   /**
-   * Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent where no use is advised,
-   * or nothing is known.
+   * Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent if no use is advised, or
+   * nothing is known.
    */
   expected_error_mm?: number | null;
-  /** Whether it predicts better than the nominal model there. */
+  /** Decision whether it predicts better than the nominal model there. */
   gain?: Gain | null;
-  /** How far it may be used. */
+  /** Permitted use. */
   level: Level;
-  /** The model that is delivered: the corrected one where it has terms. Missing in older files. */
+  /** The delivered model: the corrected one if it has terms. Missing in older files. */
   model?: AcceptedModel | null;
   /** Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS). */
   nominal_error_mm?: number | null;
   /** Sentences with the deciding figures. */
   reasons: string[];
   /**
-   * Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent where no use is advised,
-   * and in older files.
+   * Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent if no use is advised, and
+   * in older files.
    */
   sampled_range_error_mm?: number | null;
 };
 
 /** A weight. */
 export type WeightEntry = {
-  /** What it is at: the name of a joint, or of the tip. */
+  /** Name of the joint that carries it, or of the tip. */
   at: string;
   /** Its body. */
   on: BodyEntry;
-  /** Its place at zero joint values, base frame. */
+  /** Its position at zero joint values, base frame. */
   place_m: [number, number, number];
 };
 
@@ -2024,17 +2028,17 @@ export type WeightEntry = {
 export type WorkspaceCellEntry = {
   /** Number of configurations. */
   configurations: number;
-  /** Its height along the axis above the base's origin, from, metres. */
+  /** Its height along the axis above the base's origin, lower end, metres. */
   height_m: number;
   /** Distances, millimetres. */
   position_mm: SpreadEntry;
-  /** Distance of the nominal tip from the axis, from, metres. */
+  /** Distance of the nominal tip from the axis, lower end, metres. */
   radius_m: number;
   /** Angles, degrees. */
   rotation_deg: SpreadEntry;
   /**
-   * Expected error of predicted positions in these configurations (root mean square, millimetres): what a corrected program is expected to
-   * miss by. Missing without an uncertainty, and in files of earlier versions.
+   * Expected error of a corrected program in these configurations: of predicted positions, root mean square, millimetres. Missing without
+   * an uncertainty, and in files of earlier versions.
    */
   sigma_position_mm?: number | null;
 };
