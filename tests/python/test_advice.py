@@ -204,7 +204,7 @@ def test_two_sets_of_coordinates(here):
     posed = "".join(",".join(map(repr, [*(value + 0.2 for value in place), 1.5, 2.5, 3.5, *place, 1.5, 2.5, 3.5])) + "\n" for place in places)
     (here / "report.csv").write_text(",".join(names) + "\n" + posed)
     said = run(here, "check", "robot.urdf", "joints.csv", "report.csv")
-    assert "the positions alone, since angles do not say their convention" in said and "100 points" in said
+    assert "the positions alone, since angles do not state their convention" in said and "100 points" in said
     orientation = 'orientation = { form = "intrinsic_zyx", columns = ["Measured a", "Measured b", "Measured c"] }\n'
     (here / "map.toml").write_text('position = { columns = ["Measured x", "Measured y", "Measured z"] }\n' + orientation)
     assert "100 poses" in run(here, "check", "robot.urdf", "joints.csv", "report.csv", "--columns", "map.toml")

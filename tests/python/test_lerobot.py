@@ -107,7 +107,7 @@ def test_degrees_and_per_cent_are_the_same_readings(calibrated, tmp_path, unit, 
     (tmp_path / "other.csv").write_text("\n".join(table) + "\n")
     model = poecal.Robot.from_urdf(SO101 / "robot.urdf")
     read = [
-        poecal.Measurements.from_files([path, SO101 / "corners.csv"], model, columns=SO101 / "follower.json", camera=[str(SO101 / "camera.csv")], markers=["charuco:7x5:36mm:26mm:DICT_4X4_50"])
+        poecal.Measurements.from_files([path, SO101 / "corners.csv"], model, columns=SO101 / "follower.json", cameras=[str(SO101 / "camera.csv")], markers=["charuco:7x5:36mm:26mm:DICT_4X4_50"])
         for path in (SO101 / "motors.csv", tmp_path / "other.csv")
     ]
     assert numpy.abs(read[0].joints - read[1].joints).max() < 1e-9

@@ -258,7 +258,7 @@ def test_what_a_maker_found_is_a_tolerance(tmp_path):
     run = subprocess.run(list(map(str, command)), capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     said = " ".join(run.stderr.split())
-    assert "tolerance 0.0203 deg, 0.3536 mm: the root mean squares of the 4 errors of axes" in said and "rob1_2 give" in said, run.stderr
+    assert "tolerance 0.0203 deg, 0.3536 mm: the root mean squares of the 4 errors of axes" in said and "compliance of rob1_2" in said, run.stderr
     robot = package.Robot.read(ELBOW)
     measurements = package.Measurements.from_csv(tmp_path / "sim/measurements.csv", robot)
     by_file = package.calibrate(robot, measurements, tolerance_deg_mm=str(tmp_path / "MOC.cfg"))
