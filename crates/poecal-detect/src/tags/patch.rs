@@ -98,7 +98,7 @@ impl TagPatch {
 
     /// The light of the pixels by a model, blurred, from 0 to 1.
     pub(crate) fn blurred_model(&self, model: &TagModel, cells: &TagCells) -> Option<PatchModel> {
-        let back = model.to_tag()?.rows_about(self.middle);
+        let back = model.tag_homography()?.rows_about(self.middle);
         let mut seen = run_vectorized(
             #[inline(always)]
             || self.sharp_model(model, &BentTagMap::new(model, back), cells),

@@ -32,7 +32,7 @@ impl TagModel {
     }
 
     /// Map from the picture to the tag, without the bend.
-    pub(crate) fn to_tag(&self) -> Option<Homography> {
+    pub(crate) fn tag_homography(&self) -> Option<Homography> {
         Homography::of_corners(&self.corners, &SIGNS.map(Vector2::from))
     }
 

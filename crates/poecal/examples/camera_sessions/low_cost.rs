@@ -108,7 +108,7 @@ fn arm(seed: u64) -> Option<Arm> {
     signs[first] = -1.0;
     signs[(first + step) % count] = -1.0;
     let zeros = (0..count).map(|_| ZERO_RAD * (2.0 * random::uniform_number(&mut generator) - 1.0)).collect();
-    let in_hand = seed % 2 == 0;
+    let in_hand = seed.is_multiple_of(2);
     let lens = Lens { size_px: Some([1280, 720]), ..Lens::pinhole([920.0, 920.0], [639.5, 359.5]) };
     let board = Board::chessboard("board", [9, 6], if in_hand { 0.028 } else { 0.02 }).ok()?;
     let ranges = Configurations::new(&nominal);
