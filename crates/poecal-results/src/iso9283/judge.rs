@@ -41,7 +41,7 @@ pub struct JudgedTest {
 /// Computes the figures of a test, and of a test before in `reference`, and decides the limits.
 ///
 /// # Errors
-/// As [`read_test`], [`iso9283`], [`TestFile::completed`], [`TestResult::new`] and [`TestResult::compare`].
+/// As `read_test`, [`iso9283`], `TestFile::completed`, [`TestResult::new`] and [`TestResult::compare`].
 pub fn judge_test(
     (measurements, reference): (&[PathBuf], &[PathBuf]),
     model: Option<&Model>,
