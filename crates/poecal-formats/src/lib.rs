@@ -14,6 +14,7 @@ pub mod abb;
 pub mod foreign;
 pub mod logo;
 pub mod mimic;
+pub mod motors;
 pub mod proof;
 pub mod robot_toml;
 mod unread_elements;

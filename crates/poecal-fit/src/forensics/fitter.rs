@@ -172,11 +172,9 @@ impl<'a> Fitter<'a> {
 
     /// Fits the screws from a registration in a few iterations.
     pub(crate) fn calibrate(&self, data: &Dataset, registered: &Estimate, iterations: usize) -> (Estimate, Misfit) {
-        let kinds = registered.kinds().iter().enumerate();
         // The first device frame stays: beside the screws it is redundant.
-        let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
         let first = data.first_station(&data.all_rows());
-        let free = self.devices(data, Some(first)).into_iter().chain(screws).collect();
+        let free = self.devices(data, Some(first)).into_iter().chain(axes(registered)).collect();
         self.fit(data, registered, free, iterations)
     }
 
@@ -198,9 +196,7 @@ impl<'a> Fitter<'a> {
         (joints, term): (&[usize], Term),
         iterations: usize,
     ) -> (Estimate, Misfit) {
-        let kinds = registered.kinds();
-        let free = |&joint: &usize| kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term }));
-        let free = joints.iter().filter_map(free).chain(self.devices(data, None)).collect();
+        let free = terms(registered, joints, term).chain(self.devices(data, None)).collect();
         self.fit(data, registered, free, iterations)
     }
 
@@ -213,13 +209,7 @@ impl<'a> Fitter<'a> {
         tolerance: Tolerance,
     ) -> (Estimate, Misfit) {
         let prior = Prior::new(self.robot, tolerance, self.device_free);
-        let kinds = registered.kinds();
-        let axes = kinds.iter().enumerate();
-        let axes = axes.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
-        let terms = joints
-            .iter()
-            .filter_map(|&joint| kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term })));
-        let free = axes.chain(terms).chain(self.devices(data, None)).collect();
+        let free = axes(registered).chain(terms(registered, joints, term)).chain(self.devices(data, None)).collect();
         Fitter { constrained: Some((prior, self.spread_m(data))), weight: 1.0, ..self.clone() }
             .fit(data, registered, free, LONG)
     }
@@ -321,6 +311,20 @@ impl<'a> Fitter<'a> {
             total_m: factor * ((position + rotation * self.length_m.powi(2)) / count).sqrt(),
         }
     }
+}
+
+/// All axes of an estimate as unknowns.
+fn axes(estimate: &Estimate) -> impl Iterator<Item = Parameter> {
+    let kinds = estimate.kinds().iter().enumerate();
+    kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }))
+}
+
+/// A term of some joints as unknowns.
+fn terms(estimate: &Estimate, joints: &[usize], term: Term) -> impl Iterator<Item = Parameter> {
+    let kinds = estimate.kinds();
+    joints
+        .iter()
+        .filter_map(move |&joint| kinds.get(joint).map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term })))
 }
 
 /// Some rows of a data set, without stated noise.

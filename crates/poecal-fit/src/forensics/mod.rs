@@ -24,6 +24,7 @@ mod zero;
 pub(crate) use change::RowChange;
 pub use diagnosis::{Diagnosis, DiagnosisKind};
 pub(crate) use fitter::{Fitter, Misfit, subsample};
+pub(crate) use hypotheses::ReadingColumns;
 
 use std::cell::LazyCell;
 

@@ -2,7 +2,7 @@
 //! tried, and the zeros are fitted with nominal screws.
 
 use super::pictures::{in_hand, take_first_poses};
-use crate::forensics::{Fitter, Misfit, RowChange, subsample};
+use crate::forensics::{Fitter, Misfit, ReadingColumns, RowChange, subsample};
 use crate::state::Estimate;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{ReadingKind, Robot, Term, Tolerance};
@@ -96,14 +96,10 @@ pub fn find_zeros(data: &Dataset, robot: &Robot) -> Option<JointZeros> {
 
 impl<'a> Search<'a> {
     fn new(data: &Dataset, robot: &'a Robot) -> Option<Self> {
-        let names = robot.reading_names();
-        let own = |(column, name): (usize, &String)| {
-            let mut users = robot.joints.iter().enumerate().filter(|(_, it)| it.reading.name == *name);
-            let (joint, _) = users.next()?;
-            let is_own = users.next().is_none() && robot.reading_kind(name) == ReadingKind::Angle;
-            is_own.then_some((column, joint))
-        };
-        let (columns, joints): (Vec<usize>, Vec<usize>) = names.iter().enumerate().filter_map(own).unzip();
+        let known = ReadingColumns::new(robot);
+        let own = |column: usize| Some((column, known.only_joint(robot, column)?.0));
+        let angles = (0..known.names.len()).filter(|&column| known.kinds[column] == ReadingKind::Angle);
+        let (columns, joints): (Vec<usize>, Vec<usize>) = angles.filter_map(own).unzip();
         if data.is_empty() || joints.is_empty() {
             return None;
         }
@@ -118,7 +114,7 @@ impl<'a> Search<'a> {
         let zeros = vec![0.0; count];
         let mut all: Vec<SignCandidate> =
             self.combinations().into_iter().map(|signs| self.candidate(signs, &zeros)).collect();
-        let before_m = all.first()?.misfit.total_m;
+        let before_m = self.fitter.roughly_registered(&self.data).1.total_m;
         let by_score = |a: &SignCandidate, b: &SignCandidate| a.score().total_cmp(&b.score());
         all.sort_by(by_score);
         let best: Vec<SignCandidate> = all.iter().take(BEST).cloned().collect();

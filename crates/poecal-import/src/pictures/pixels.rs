@@ -50,7 +50,7 @@ impl MeasurementReader<'_> {
         self.warn(path, (column != "image").then(|| format!("took `{column}` for image")));
         self.warn_of_ignored(path, &inputs.layout);
         self.warn(path, inputs.layout.joint_words());
-        self.taken_by.clone_from(&inputs.layout.controller);
+        self.found.data.controller.clone_from(&inputs.layout.controller);
         self.found.warnings.extend(inputs.joint_warnings(&table.header)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
@@ -66,7 +66,7 @@ impl MeasurementReader<'_> {
         let has_joints = self.taken.is_empty() || joints.iter().all(|name| table.header.count(name) > 0);
         let mut layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
         if !has_joints {
-            layout.controller.clone_from(&self.taken_by);
+            layout.controller.clone_from(&self.found.data.controller);
         }
         let mut numbers = NumberReader::new(self.map.decimal);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);

@@ -31,7 +31,7 @@ use poecal_fit::input_doubts::boards::refuse_wrong_boards;
 use poecal_fit::start::{settle_faces, settle_pictures};
 use poecal_model::camera::{Board, Camera};
 use poecal_model::measurement::Dataset;
-use poecal_model::robot::{Controller, Robot};
+use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::{NamedLines, escape_invisible};
 use poecal_storage::document;
@@ -106,8 +106,6 @@ pub(crate) struct MeasurementReader<'a> {
     pub(crate) taken: ConfigurationsByImage,
     /// Name of these readings in messages.
     pub(crate) taken_as: &'static str,
-    /// Conversion of their columns into readings.
-    pub(crate) taken_by: Option<Controller>,
     /// The joint readings of each line, if another file has them.
     pub(crate) readings: Option<ReadingsByLine>,
     /// The time of each row so far, seconds, if it is asked for.
@@ -137,7 +135,6 @@ impl<'a> MeasurementReader<'a> {
             begun: BTreeMap::new(),
             taken: ConfigurationsByImage::new(),
             taken_as: "joint readings",
-            taken_by: None,
             readings: None,
             times: None,
             cameras: options.cameras.clone(),

@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::MeasurementFile;
-use crate::table::motors::Motors;
+use crate::table::motors::MotorReadings;
 use poecal_fit::start::{JointZeros, find_zeros};
+use poecal_formats::motors::TICKS;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result, first_few, shorten_name};
@@ -14,15 +15,14 @@ const FEWEST_ROWS: usize = 8;
 /// Smallest zero that is reported, rad.
 const LEAST_RAD: f64 = 0.009;
 
-/// Ticks of a turn, and the share of a motor's range by which a reading may be beyond it.
-const TICKS: f64 = 4096.0;
+/// Share of a motor's range by which a reading may be beyond it.
 const BEYOND: f64 = 0.05;
 
 /// Finds signs and zeros, changes the readings and the account of how they are made, and states what was found.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] if a reading is far beyond the range of its motor.
-pub(crate) fn settle_zeros(found: &mut MeasurementFile, robot: &Robot, motors: &Motors) -> Result<()> {
+pub(crate) fn settle_zeros(found: &mut MeasurementFile, robot: &Robot, motors: &MotorReadings) -> Result<()> {
     refuse_far_ticks(&found.data, motors)?;
     let rows = found.data.len();
     if rows < FEWEST_ROWS {
@@ -50,7 +50,7 @@ pub(crate) fn settle_zeros(found: &mut MeasurementFile, robot: &Robot, motors: &
 }
 
 /// Refuses raw positions that the motors of the file cannot have.
-fn refuse_far_ticks(data: &Dataset, motors: &Motors) -> Result<()> {
+fn refuse_far_ticks(data: &Dataset, motors: &MotorReadings) -> Result<()> {
     let readings = data.controller.iter().flat_map(|it| &it.readings).enumerate();
     for (at, reading) in readings {
         let Some((column, made)) = reading.columns.iter().next() else { continue };

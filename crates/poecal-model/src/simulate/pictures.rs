@@ -196,9 +196,7 @@ impl PictureSimulation {
             } else {
                 scene.base_from_other.inverse() * held
             };
-            let center = camera_from_board.act(&middle(&self.board.points));
-            let facing = camera_from_board.rotation.column(2).dot(&center) / center.norm();
-            if is_short && facing < FACING {
+            if is_short && self.facing(&camera_from_board) < FACING {
                 continue;
             }
             if let Some(corners) = self.corners(&camera_from_board, generator) {
@@ -206,6 +204,12 @@ impl PictureSimulation {
             }
         }
         None
+    }
+
+    /// Cosine between the board's normal and the line of sight to its middle.
+    fn facing(&self, camera_from_board: &Pose) -> f64 {
+        let center = camera_from_board.act(&middle(&self.board.points));
+        camera_from_board.rotation.column(2).dot(&center) / center.norm()
     }
 
     /// A pose of the board in the camera's frame.

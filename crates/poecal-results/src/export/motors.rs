@@ -1,43 +1,21 @@
 //! LeRobot's calibration of motors with the zeros that a calibration found, in ticks of Feetech's motors: `position = raw − homing_offset`, and the
 //! zero of an angle is the middle of the range.
 
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-
-use serde::{Deserialize, Serialize};
 
 use super::offsets::{explain_offsets, move_nominal};
 use super::{ExportedText, Proof, export_error, remaining_difference};
 use crate::model::Model;
 use poecal_arm::lie::Pose;
+use poecal_formats::motors::{DIVISOR, Motor, Motors, TICKS};
 use poecal_model::robot::{Controller, Joint, JointKind, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::json_text;
 
-/// Ticks of a turn.
-const TICKS: f64 = 4096.0;
-/// Number by which LeRobot divides degrees of a turn.
-const DIVISOR: f64 = 4095.0;
 /// Largest homing offset that the motors store.
 const MOST_TICKS: i64 = 2047;
 /// Smallest share of its travel that a motor keeps.
 const LEAST_TRAVEL: f64 = 0.1;
-/// Ending of LeRobot's names of positions.
-const POSITION: &str = ".pos";
-
-/// A motor of LeRobot's calibration.
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Motor {
-    id: u32,
-    drive_mode: u8,
-    homing_offset: i64,
-    range_min: i64,
-    range_max: i64,
-}
-
-/// Motors by their names.
-type Motors = BTreeMap<String, Motor>;
 
 /// The file with other homing offsets. Of readings that are those of the motors, zeros and signs are those that were found with them, and the
 /// geometry is left to the calibrated URDF; of others, the offsets that come nearest to the calibrated robot.
@@ -69,22 +47,18 @@ fn motors_of(robot: &Robot, motors: Option<&str>) -> Result<Motors> {
             ))
         }),
         None => {
-            let motor = |id: u32| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
+            let motor = |id: u8| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
             let joints = robot.joints.iter().map(|joint| joint.name.clone());
-            Ok(joints.zip((1..).map(motor)).collect())
+            Ok(Motors(joints.zip((1..).map(motor)).collect()))
         }
     }
 }
 
 /// The motor of a joint, by its name, the name of its column, or its number.
 fn motor_of<'m>(motors: &'m mut Motors, joint: &Joint, column: Option<&str>) -> Result<(String, &'m mut Motor)> {
-    let column = column.map(|it| it.strip_suffix(POSITION).unwrap_or(it));
-    let by_number = || motors.iter().find(|(_, it)| joint.name.parse() == Ok(it.id)).map(|it| it.0.clone());
-    let names = [Some(joint.name.as_str()), column].into_iter().flatten();
-    let name = names.map(str::to_owned).find(|it| motors.contains_key(it)).or_else(by_number);
-    let known = motors.keys().cloned().collect::<Vec<_>>().join(", ");
-    let found = name.and_then(|name| Some((motors.get_mut(&name)?, name)));
-    found.map(|(motor, name)| (name, motor)).ok_or_else(|| {
+    let known = motors.0.keys().cloned().collect::<Vec<_>>().join(", ");
+    let name = motors.name_of(&joint.name, column).map(str::to_owned);
+    name.and_then(|name| motors.0.get_mut(&name).map(|motor| (name, motor))).ok_or_else(|| {
         option(format!(
             "found no motor `{}` in the calibration of motors, expected one of each joint, and found {known}",
             joint.name
@@ -105,16 +79,14 @@ fn write_zeros(robot: &Robot, mut motors: Motors, controller: &Controller) -> Re
             )));
         };
         let (name, motor) = motor_of(&mut motors, joint, Some(column))?;
-        let [least, most] = [motor.range_min, motor.range_max].map(|it| it as f64);
-        let middle = 0.5 * (least + most);
+        let middle = motor.middle();
         // Count at the joint's zero, in the column's own unit.
         let counted = -reading.offset / made.factor;
         let (zero, is_turned) = match made.unit.as_str() {
             "ticks" if made.factor.abs() == 1.0 => (counted * TICKS / TAU, made.factor < 0.0),
             "ticks" => {
-                let drive = if motor.drive_mode == 1 { -1.0 } else { 1.0 };
-                let share = counted * TICKS / TAU * (most - least) / 200.0;
-                (middle + drive * share, made.factor * drive < 0.0)
+                let per_cent = motor.ticks_of_per_cent();
+                (middle + per_cent * counted * TICKS / TAU, made.factor * per_cent < 0.0)
             }
             "deg" => (middle + counted.to_degrees() * DIVISOR / 360.0, made.factor < 0.0),
             other => {
@@ -162,7 +134,7 @@ fn write_offsets(model: &Model, robot: &Robot, mut motors: Motors) -> Result<Exp
                 motor.drive_mode
             )));
         }
-        let middle = 0.5 * (motor.range_min as f64 + motor.range_max as f64);
+        let middle = motor.middle();
         let shift = rezero(motor, middle - offset * TICKS / TAU, &name)?;
         rounded.push(-(shift as f64) * TAU / TICKS);
     }
@@ -182,7 +154,7 @@ fn write_offsets(model: &Model, robot: &Robot, mut motors: Motors) -> Result<Exp
 /// Puts the middle of a motor's range to a position, in ticks, with the travel within that before; returns the shift in whole ticks.
 fn rezero(motor: &mut Motor, zero: f64, name: &str) -> Result<i64> {
     let (least, most) = (motor.range_min, motor.range_max);
-    let middle = 0.5 * (least as f64 + most as f64);
+    let middle = motor.middle();
     let shift = (zero - middle).round() as i64;
     let corrected = motor.homing_offset.saturating_add(shift);
     if ![motor.homing_offset, corrected].iter().all(|it| (-MOST_TICKS..=MOST_TICKS).contains(it)) {

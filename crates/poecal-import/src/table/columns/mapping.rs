@@ -11,7 +11,7 @@ use super::super::column_spec::ColumnSpec;
 use super::super::mapping_values::{angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis};
 use super::super::number::DecimalSign;
 use super::super::orientation::OrientationForm;
-use super::motors::Motors;
+use super::motors::MotorReadings;
 use crate::FitWhere;
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::ThirdAxis;
@@ -28,7 +28,7 @@ pub struct ColumnMap {
     #[serde(skip)]
     pub(crate) path: PathBuf,
     #[serde(skip)]
-    pub(crate) motors: Option<Motors>,
+    pub(crate) motors: Option<MotorReadings>,
     #[serde(deserialize_with = "separator")]
     pub(crate) separator: Option<Separator>,
     #[serde(deserialize_with = "decimal_sign")]
@@ -157,7 +157,7 @@ impl ColumnMap {
 
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         if text.trim_start().starts_with('{') {
-            let motors = Some(Motors::parse(text, path)?);
+            let motors = Some(MotorReadings::parse(text, path)?);
             return Ok(ColumnMap { motors, path: path.to_path_buf(), ..ColumnMap::default() });
         }
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {

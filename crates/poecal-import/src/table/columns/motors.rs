@@ -3,38 +3,19 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::Deserialize;
-
 use super::super::header::Header;
 use super::column_spec::ColumnSpec;
+use poecal_formats::motors::{DIVISOR, Motor, Motors, POSITION, TICKS};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
-/// Ticks of a turn, and as many as LeRobot divides degrees by.
-const TICKS: f64 = 4096.0;
-const DIVISOR: f64 = 4095.0;
-/// Ending of LeRobot's names of positions.
-const POSITION: &str = ".pos";
+/// Motors whose positions are readings of joints.
+#[derive(Clone, Debug)]
+pub(crate) struct MotorReadings(Motors);
 
-/// Motors by their names, as `~/.cache/huggingface/lerobot/calibration/robots/TYPE/ID.json` has them.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(transparent)]
-pub(crate) struct Motors(BTreeMap<String, MotorReadings>);
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MotorReadings {
-    id: u8,
-    drive_mode: u8,
-    #[expect(dead_code, reason = "part of the file; readings have it off already")]
-    homing_offset: i32,
-    range_min: u32,
-    range_max: u32,
-}
-
-impl Motors {
+impl MotorReadings {
     /// The motors of a text in JSON; messages call it `path`.
     ///
     /// # Errors
@@ -49,29 +30,29 @@ impl Motors {
                 .in_file(path)
         })?;
         for (name, motor) in &motors.0 {
-            let (least, most) = (motor.range_min, motor.range_max);
-            if least >= most || f64::from(most) >= TICKS || motor.drive_mode > 1 {
+            let [least, most] = motor.range();
+            let is_range = 0.0 <= least && least < most && most < TICKS;
+            if !is_range || motor.drive_mode > 1 || i32::try_from(motor.homing_offset).is_err() {
                 return Err(ErrorKind::Syntax
                     .error(format!(
-                        "found a range from {least} to {most} and drive_mode {} of motor `{name}`, expected a range within 0 to 4095 and 0 or 1",
-                        motor.drive_mode
+                        "found a range from {least} to {most}, drive_mode {} and homing_offset {} of motor `{name}`, expected a range within 0 to \
+                         4095, 0 or 1, and an offset of 32 bits",
+                        motor.drive_mode, motor.homing_offset
                     ))
                     .in_file(path));
             }
         }
-        Ok(motors)
+        Ok(MotorReadings(motors))
     }
 
     /// Range of the motor of a joint, in ticks.
     pub(crate) fn range(&self, name: &str) -> Option<[f64; 2]> {
-        let (_, motor) = self.motor(name)?;
-        Some([motor.range_min, motor.range_max].map(f64::from))
+        Some(self.motor(name)?.1.range())
     }
 
-    /// The motor of a joint: models name joints as motors, or by their numbers.
-    fn motor(&self, name: &str) -> Option<(&String, &MotorReadings)> {
-        let by_number = || self.0.iter().find(|(_, motor)| name.parse() == Ok(motor.id));
-        self.0.get_key_value(name).or_else(by_number)
+    /// The motor of a joint, with its name.
+    fn motor(&self, joint: &str) -> Option<(&String, &Motor)> {
+        self.0.0.get_key_value(self.0.name_of(joint, None)?)
     }
 
     /// Columns of the joints in a header, with what makes angles of them: zero is the middle of the range.
@@ -94,7 +75,7 @@ impl Motors {
 
     fn column(&self, header: &Header<'_>, name: &str, robot: &Robot) -> Result<ColumnSpec> {
         let Some((motor_name, motor)) = self.motor(name) else {
-            let own: Vec<String> = self.0.keys().cloned().collect();
+            let own: Vec<String> = self.0.0.keys().cloned().collect();
             let joints = robot.joint_reading_names();
             return ErrorKind::Measurement.refuse(format!(
                 "found no motor of joint `{name}` among {}, expected one of each of {}: state the file of this arm, or the end of its chain by \
@@ -111,13 +92,11 @@ impl Motors {
         };
         let ticks = NamedUnit::parse("ticks", Unit::Radian)?;
         let degrees = NamedUnit::parse("deg", Unit::Radian)?;
-        let turned = if motor.drive_mode == 1 { -1.0 } else { 1.0 };
-        let [least, most] = [motor.range_min, motor.range_max].map(f64::from);
         let unit = cell.unit.as_deref().unwrap_or_default();
         let (factor, offset, unit) = match unit {
-            "ticks" => (1.0, -0.5 * (least + most), ticks),
+            "ticks" => (1.0, -motor.middle(), ticks),
             "deg" | "degrees" | "°" => (DIVISOR / TICKS, 0.0, degrees),
-            "%" | "percent" => (turned * (most - least) / 200.0, 0.0, ticks),
+            "%" | "percent" => (motor.ticks_of_per_cent(), 0.0, ticks),
             other => {
                 let found = if other.is_empty() { "no unit".to_owned() } else { format!("the unit `{other}`") };
                 return Err(header.error(
